@@ -22,3 +22,4 @@ mod random_worlds;
 mod routes;
 mod scenarios;
 mod schemas;
+mod telemetry;

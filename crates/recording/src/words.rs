@@ -175,6 +175,15 @@ fn sentence(event: &Event, names: Names) -> String {
         }
         Event::TaskBegan { task: number } => format!("task {} begins", task(number.index())),
         Event::TaskEnded { task: number } => format!("task {} ends", task(number.index())),
+        Event::Heard { robot, sent_s } => format!("the base hears what robot {robot} sent at {sent_s:.2} s"),
+        Event::Lost { robot } => format!("a message of robot {robot} is lost"),
+        Event::BeganToLie { robot } => format!("robot {robot} begins to lie"),
+        Event::BecameHonest { robot } => format!("robot {robot} tells no more lies"),
+        Event::Slowed { robot, factor } => {
+            format!("robot {robot} has {:.0} % of its speed left", 100.0 * factor)
+        }
+        Event::Faded { robot, factor } => format!("robot {robot} spends {factor} times the energy"),
+        Event::Muted { robot } => format!("the radio of robot {robot} breaks"),
     }
 }
 

@@ -246,6 +246,7 @@ mod tests {
             may_idle: false,
             history: Vec::new(),
             random_seed: RandomSeed::from(1),
+            evidence: None,
         }
     }
 

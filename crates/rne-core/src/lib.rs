@@ -24,6 +24,7 @@ pub mod assignments;
 pub mod decision;
 pub mod divergence;
 pub mod error;
+pub mod evidence;
 pub mod hierarchy;
 pub mod history;
 pub mod ids;
@@ -41,6 +42,7 @@ pub use divergence::{
     jeffreys, jensen_shannon, mutual_information, relative_entropy, relative_entropy_by_need,
 };
 pub use error::{AssignmentError, NeedsError, PolicyError, QuestionError, RegistryError};
+pub use evidence::{EnergyOutcome, Evidence, Extent, LevelReport, Rating, RobotRound};
 pub use history::{GroupOutcome, MemberOutcome, RoundOutcome};
 pub use ids::{NeedId, RoleId, TaskId};
 pub use measure::{NeedPart, TeamTrust, TrustMeasure};

@@ -10,11 +10,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 pub use crate::schema::{MAX_TASKS, SCHEMA_VERSION};
 
 use crate::error::QuestionError;
+use crate::evidence::Evidence;
 use crate::history::RoundOutcome;
 use crate::ids::{RoleId, TaskId, rows};
 use crate::needs::{NeedVector, check_length};
@@ -44,6 +45,15 @@ pub struct Question {
     pub history: Vec<RoundOutcome>,
     /// Seed of the policy's own draws in this round.
     pub random_seed: RandomSeed,
+    /// What the base heard of the robots, where reports may be late, lost, wrong or lies; absent where
+    /// everybody knows how every robot is. The state of a trial has it elsewhere, so that it is in texts only.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "evidence_of_text")]
+    pub evidence: Option<Evidence>,
+}
+
+/// Reads evidence from a text; in bytes it is never written.
+fn evidence_of_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Evidence>, D::Error> {
+    if deserializer.is_human_readable() { Option::deserialize(deserializer) } else { Ok(None) }
 }
 
 /// A need that members report.

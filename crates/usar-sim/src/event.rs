@@ -285,6 +285,47 @@ pub enum Event {
     /// No round can begin, no event is to come, and every robot that can act is at home or cut off: the trial
     /// ends.
     Standstill,
+    /// The base heard a message that came over the medium.
+    Heard {
+        /// The sender.
+        robot: RobotId,
+        /// When it was sent, in seconds.
+        sent_s: f64,
+    },
+    /// A message to the base was lost.
+    Lost {
+        /// The sender.
+        robot: RobotId,
+    },
+    /// A robot began to lie by an event of the scenario.
+    BeganToLie {
+        /// The robot.
+        robot: RobotId,
+    },
+    /// A robot stopped lying by an event of the scenario.
+    BecameHonest {
+        /// The robot.
+        robot: RobotId,
+    },
+    /// A robot became slower by an event of the scenario, and its gauge does not show it.
+    Slowed {
+        /// The robot.
+        robot: RobotId,
+        /// The share of its speed that it has left.
+        factor: f64,
+    },
+    /// A robot's battery faded by an event of the scenario.
+    Faded {
+        /// The robot.
+        robot: RobotId,
+        /// The factor on what it spends.
+        factor: f64,
+    },
+    /// A robot's radio broke by an event of the scenario.
+    Muted {
+        /// The robot.
+        robot: RobotId,
+    },
 }
 
 impl Event {

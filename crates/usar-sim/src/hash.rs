@@ -12,8 +12,11 @@ use xxhash_rust::xxh3::xxh3_128;
 pub const PERIOD_S: f64 = 10.0;
 
 /// The parts of the state, in the order of [`Link::parts`].
-pub const PARTS: [&str; 9] =
-    ["bodies", "robots", "debris", "rescuees", "beliefs", "mission", "routes", "resolver", "events"];
+pub const PARTS: [&str; 10] =
+    ["bodies", "robots", "debris", "rescuees", "beliefs", "mission", "routes", "resolver", "events", "evidence"];
+
+/// The hash of a part that a trial does not have. It is not in the digest.
+pub(crate) const ABSENT: u128 = 0;
 
 /// One link of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -48,7 +51,8 @@ impl HashChain {
         let mut bytes = Vec::with_capacity(16 * (PARTS.len() + 2));
         bytes.extend(before.to_le_bytes());
         bytes.extend(step.to_le_bytes());
-        parts.iter().for_each(|part| bytes.extend(part.to_le_bytes()));
+        let there = parts.iter().filter(|part| **part != ABSENT);
+        there.for_each(|part| bytes.extend(part.to_le_bytes()));
         self.links.push(Link { step, parts: parts.map(|part| part as u16), digest: xxh3_128(&bytes) });
     }
 

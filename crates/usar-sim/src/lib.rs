@@ -45,6 +45,7 @@ pub mod simulation;
 pub mod snapshot;
 pub mod stage;
 mod tally;
+pub mod telemetry;
 pub mod vitals;
 pub mod world;
 

@@ -142,6 +142,58 @@ ron_tree::limits! {
     /// What a robot loses of a level, in percent points.
     LOSS: "timeline[*].event.*" = 0, 100;
 
+    /// Share of its speed that a robot keeps.
+    SLOWED: "timeline[*].event.factor" = 0.01, 1;
+    /// Factor on the energy that a robot spends.
+    FADED: "timeline[*].event.factor" = 0.01, 100;
+
+    /// Time between two reports, in seconds.
+    REPORT_S: "reports.every_s" = 1, 3_600;
+    /// Roles with gauges.
+    SENSORS: "reports.sensors" = 0, ROLES.most;
+    /// Standard deviation of a gauge, in percent points.
+    GAUGE_SD: "reports.sensors.*.*.sd" = 0, 100;
+    /// Error of a gauge or of a lie, in percent points.
+    GAUGE_BIAS: "reports.sensors.*.*.bias" = -100, 100;
+    /// Growing error of a gauge, in percent points an hour.
+    GAUGE_DRIFT: "reports.sensors.*.*.drift_per_h" = -1_000, 1_000;
+    /// A probability or a share.
+    PROBABILITY: "reports.sensors.*.*.dropout" = 0, 1;
+    /// Step of a gauge, in percent points.
+    GAUGE_QUANTUM: "reports.sensors.*.*.quantum" = 0, 100;
+    /// Standard deviation of a speed seen, as a share of it.
+    WITNESS_SD: "reports.witness.sd" = 0, 1;
+    /// Looks at a group-mate.
+    LOOKS: "reports.witness.least_looks" = 1, 1_000_000;
+    /// Range of a radio, in metres.
+    RADIO_RANGE_M: "medium.range_m" = 0.1, 10_000;
+    /// Delay of a message, in seconds.
+    DELAY_S: "medium.delay_s" = 0, 3_600;
+    /// Capacity of a channel, in kilobits a second.
+    KBPS: "medium.kbps" = 0.01, 1e6;
+    /// Length of a message, in bytes.
+    MESSAGE_BYTES: "medium.bytes" = 1, 65_536;
+    /// Time on the channel besides the message, in milliseconds.
+    OVERHEAD_MS: "medium.overhead_ms" = 0, 10_000;
+    /// A loss, in dB.
+    DECIBEL: "medium.path.*_db" = 0, 500;
+    /// Path loss exponent.
+    PATH_EXPONENT: "medium.path.n" = 0, 10;
+    /// Standard deviation of shadowing, in dB.
+    SHADOWING_DB: "medium.path.sigma_db" = 0.001, 100;
+    /// Blackouts.
+    BLACKOUTS: "medium.blackouts" = 0, 100;
+    /// Radius of a blackout, in metres.
+    BLACKOUT_RADIUS_M: "medium.blackouts[*].radius_m" = 0.1, 10_000;
+    /// Entries of the list of deceit.
+    DECEITS: "deceit" = 0, 1_000;
+    /// A level that is said, in percent.
+    SAID_LEVEL: "deceit[*].floor" = 0, 100;
+    /// Factor of a lie.
+    LIE_FACTOR: "deceit[*].lie.Scale.factor" = 0, 1_000;
+    /// Period of a lie, in seconds.
+    LIE_PERIOD_S: "deceit[*].lie.OnOff.period_s" = 0.001, 86_400;
+
     /// A cost, in percent or points.
     RATE: "costs.*.*" = 0, 100;
     /// What work costs in a second, in percent or points.

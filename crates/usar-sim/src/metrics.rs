@@ -197,6 +197,13 @@ impl Metrics {
                 | Event::ErrandsOver
                 | Event::MissionOver
                 | Event::Standstill
+                | Event::Heard { .. }
+                | Event::Lost { .. }
+                | Event::BeganToLie { .. }
+                | Event::BecameHonest { .. }
+                | Event::Slowed { .. }
+                | Event::Faded { .. }
+                | Event::Muted { .. }
                 | Event::DebrisFell { .. }
                 | Event::WayClosed { .. }
                 | Event::WayOpened { .. }

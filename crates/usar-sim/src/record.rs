@@ -1,6 +1,6 @@
 //! The record of a trial: its results once it is over.
 
-use rne_core::{Decision, Member, Question, RoundOutcome};
+use rne_core::{Decision, Evidence, Extent, Member, Question, RoundOutcome};
 use serde::{Deserialize, Serialize};
 
 use crate::conflict::Delay;
@@ -10,6 +10,7 @@ use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
 use crate::model::Model;
 use crate::robot::{Condition, Robot};
 use crate::tally::Tally;
+use crate::telemetry::{Heard, Link, Telemetry, named};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -127,6 +128,67 @@ impl DecisionRecord {
     }
 }
 
+/// What the base heard in a trial, where it did not know how every robot is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HeardRecord {
+    /// The rounds, with the costs as they were said. Questions have them as their history.
+    pub history: Vec<RoundOutcome>,
+    /// All reports, ratings and rounds, in the order in which they were heard.
+    pub evidence: Evidence,
+    /// How much of the evidence each question had.
+    pub extents: Vec<Extent>,
+    /// The link of each robot to the base.
+    pub links: Vec<LinkRecord>,
+}
+
+/// A question with its history and its evidence, of which it was recorded without.
+pub(crate) fn whole_question(
+    asked: &Question,
+    ledger: &[RoundOutcome],
+    heard: Option<&HeardRecord>,
+) -> Question {
+    let rounds = heard.map_or(ledger, |heard| &heard.history);
+    let history = rounds.iter().filter(|round| round.round < asked.round).cloned().collect();
+    let known = heard.and_then(|heard| {
+        let extent = heard.extents.iter().find(|extent| extent.round == asked.round)?;
+        Some((heard, extent))
+    });
+    let Some((heard, extent)) = known else { return Question { history, ..asked.clone() } };
+    let history = named(&history, &extent.known_since);
+    Question { history, evidence: Some(heard.evidence.as_of(extent)), ..asked.clone() }
+}
+
+/// The link of a robot to the base in a trial.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LinkRecord {
+    /// The robot.
+    pub robot: u32,
+    /// Messages over the medium.
+    pub sent: u64,
+    /// Those that were heard.
+    pub heard: u64,
+    /// Their mean delay, in seconds; absent if there were none.
+    pub delay_s: Option<f64>,
+}
+
+impl HeardRecord {
+    pub(crate) fn of(telemetry: &Telemetry) -> Self {
+        let Heard { history, evidence, extents, .. } = telemetry.heard();
+        let link = |(robot, link): (u32, &Link)| LinkRecord {
+            robot,
+            sent: link.sent,
+            heard: link.sent - link.lost,
+            delay_s: link.mean_delay_s(),
+        };
+        Self {
+            history: history.clone(),
+            evidence: evidence.clone(),
+            extents: extents.clone(),
+            links: (0..).zip(telemetry.links()).map(link).collect(),
+        }
+    }
+}
+
 /// One trial.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialRecord {
@@ -150,6 +212,9 @@ pub struct TrialRecord {
     /// that robots reported. Questions have them as their history.
     #[serde(default)]
     pub ledger: Vec<RoundOutcome>,
+    /// What the base heard, where it did not know how every robot is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heard: Option<HeardRecord>,
     /// How the team was grouped, round by round.
     pub decisions: Vec<DecisionRecord>,
     /// Robots, by id.
@@ -198,9 +263,7 @@ impl TrialRecord {
     /// The question as it was asked, with its history.
     #[must_use]
     pub fn question(&self, asked: &DecisionRecord) -> Question {
-        let before = |round: &&RoundOutcome| round.round < asked.question.round;
-        let history = self.ledger.iter().filter(before).cloned().collect();
-        Question { history, ..asked.question.clone() }
+        whole_question(&asked.question, &self.ledger, self.heard.as_ref())
     }
 
     /// Results and costs of the task of this name.

@@ -102,6 +102,21 @@ impl Robot {
             && *wreck_at == other.wreck_at
     }
 
+    /// The same robot with these levels of energy and health, in percent.
+    #[must_use]
+    pub(crate) fn with_levels(&self, [energy, hp]: [f64; 2]) -> Self {
+        Self { energy, hp, ..self.clone() }
+    }
+
+    /// Its needs when it is fresh, in the order of the table: full, stocked and without a load.
+    #[must_use]
+    pub(crate) fn fresh_needs(&self, table: &[NeedModel]) -> Vec<f64> {
+        let resources = self.spec.resources;
+        let fresh = Self { resources, load: SmallVec::new(), ..self.with_levels([100.0; 2]) };
+        let needs = table.iter().zip(&self.spec.constants);
+        needs.map(|(need, constant)| fresh.need(need.measures, *constant)).collect()
+    }
+
     /// Whether it can still act.
     #[must_use]
     pub fn is_able(&self) -> bool {
@@ -136,6 +151,12 @@ impl Robot {
     #[must_use]
     pub(crate) fn observing_range(&self) -> f64 {
         self.spec.observing_m * self.health_factor()
+    }
+
+    /// Top speed at this health level, in percent, in metres per second.
+    #[must_use]
+    pub(crate) fn speed_at(&self, hp: f64) -> f64 {
+        self.spec.speed_mps * health_factor(hp, self.health_floor)
     }
 
     fn health_factor(&self) -> f64 {

@@ -24,6 +24,16 @@ pub enum Purpose {
     Slot,
     /// One scattered thing.
     Scatter,
+    /// The order in which robots become liars.
+    Liars,
+    /// A reading of a gauge, by robot and level, at a step.
+    Gauge,
+    /// A lie that is drawn, by robot and level, at a step.
+    Lie,
+    /// What a robot saw of a mate in a round.
+    Witness,
+    /// The fate of a message, by link and number.
+    Message,
 }
 
 impl Purpose {
@@ -37,6 +47,11 @@ impl Purpose {
             Self::SampledRadiation => 5,
             Self::Slot => 6,
             Self::Scatter => 7,
+            Self::Liars => 8,
+            Self::Gauge => 9,
+            Self::Lie => 10,
+            Self::Witness => 11,
+            Self::Message => 12,
         }
     }
 }
@@ -44,10 +59,17 @@ impl Purpose {
 /// The stream of one purpose and entity in one trial.
 #[must_use]
 pub fn stream(trial_seed: u64, purpose: Purpose, entity: u64) -> ChaCha8Rng {
+    stream_at(trial_seed, purpose, entity, 0)
+}
+
+/// The stream of one purpose and entity at one moment of a trial: a step, a round or a number.
+#[must_use]
+pub fn stream_at(trial_seed: u64, purpose: Purpose, entity: u64, moment: u64) -> ChaCha8Rng {
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&trial_seed.to_le_bytes());
     seed[8..16].copy_from_slice(&purpose.key().to_le_bytes());
     seed[16..24].copy_from_slice(&entity.to_le_bytes());
+    seed[24..].copy_from_slice(&moment.to_le_bytes());
     ChaCha8Rng::from_seed(seed)
 }
 

@@ -23,6 +23,7 @@ pub(crate) const FILES: &[(&str, &str)] = files![
     "three-tasks.ron" "three-tasks.sweep.ron"
     "two-aerial-roles.ron" "two-aerial-roles.sweep.ron"
     "warehouse.ron" "warehouse.sweep.ron"
+    "trust/aftershocks.ron" "trust/avalanche.ron" "trust/convoy.ron" "trust/flood.ron" "trust/tunnel.ron"
     "gallery/chance.ron" "gallery/collapse.ron" "gallery/corridors.ron" "gallery/failures.ron"
     "gallery/one-task.ron" "gallery/stepping-stones.ron" "gallery/two-hundred.ron"
 ];

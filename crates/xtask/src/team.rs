@@ -44,6 +44,7 @@ pub fn question(counts: [u32; 3], tasks: usize) -> Question {
         may_idle: false,
         history: Vec::new(),
         random_seed: RandomSeed::from(1),
+        evidence: None,
     };
     question.checked().expect("a question")
 }

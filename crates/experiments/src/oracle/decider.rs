@@ -28,6 +28,15 @@ pub enum Horizon {
     Trial,
 }
 
+/// Which assignment the oracle chooses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Pick {
+    /// The best.
+    Best,
+    /// The worst, to see how much grouping can matter.
+    Worst,
+}
+
 /// Options of `ORACLE`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -40,6 +49,8 @@ pub struct OracleOptions {
     pub then: String,
     /// Largest number of assignments that it plays for one decision.
     pub limit: u64,
+    /// Which assignment it chooses.
+    pub pick: Pick,
 }
 
 impl Default for OracleOptions {
@@ -49,6 +60,7 @@ impl Default for OracleOptions {
             horizon: Horizon::Round,
             then: "RNE".to_owned(),
             limit: DEFAULT_LIMIT,
+            pick: Pick::Best,
         }
     }
 }
@@ -129,7 +141,10 @@ impl Session for OracleSession {
         });
         deadline.check()?;
         let survey = survey.map_err(|error| refused(&error))?;
-        let ranked = survey.ranked(&objective);
+        let mut ranked = survey.ranked(&objective);
+        if self.options.pick == Pick::Worst {
+            ranked.reverse();
+        }
         let best = ranked.first().or(survey.evaluations.first().as_ref()).copied();
         let best = best.ok_or_else(|| refused(&"there is no assignment"))?;
         let value =

@@ -151,6 +151,7 @@ pub(crate) mod testing {
             may_idle: false,
             history: Vec::new(),
             random_seed: RandomSeed::from(1),
+            evidence: None,
         };
         let (decision, team) = (Decision::unscored(vec![ids(0), ids(1)]), question.members.clone());
         Round { trial: 3, seed: 7, question, decision, team }

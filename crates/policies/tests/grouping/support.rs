@@ -93,6 +93,7 @@ pub fn question(members: Vec<Member>, difficulties: &[u32]) -> Question {
         may_idle: false,
         history: Vec::new(),
         random_seed: RandomSeed::from(5),
+        evidence: None,
     };
     question.checked().unwrap()
 }

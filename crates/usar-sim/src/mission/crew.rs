@@ -13,6 +13,7 @@ use crate::ids::RobotId;
 use crate::model::{MissionModel, Model};
 use crate::navigation::Goal;
 use crate::robot::Robot;
+use crate::telemetry::Presence;
 use crate::scenario::{RestAtHome, RoundEnd};
 
 /// The group of one task in the current round.
@@ -73,6 +74,18 @@ impl Crew {
         let is_blind = task.is_some_and(|task| !self.is_guided[task.index()]);
         let unladen = robot.speed() * if is_blind { rules.blind_speed } else { 1.0 };
         unladen * (1.0 - rules.load_speed_loss * robot.load_share())
+    }
+
+    /// Where a robot is in the mission, for telemetry.
+    pub(crate) fn presence(&self, model: &Model, robot: &Robot) -> Presence {
+        let Agent { activity, task, .. } = &self.agents[robot.id.index()];
+        Presence {
+            task: *task,
+            is_home: *activity == Activity::Home,
+            is_in_field: activity.is_in_field(),
+            is_resting: matches!(activity, Activity::Resting(_)),
+            known_loss: self.speed_of(model, robot) / robot.speed(),
+        }
     }
 
     /// Notes which groups have a guide that can act.

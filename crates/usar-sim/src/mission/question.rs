@@ -1,18 +1,17 @@
 //! The question to the policy: how the fit robots are to be grouped.
 
-use rne_core::{GroupSizes, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
+use rne_core::{GroupSizes, Member, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
 use crate::belief::Belief;
 use crate::model::{Model, NeedModel, TaskModel};
-use crate::robot::Robot;
 use crate::scenario::EmptyTasks;
 use crate::seed::{Purpose, stream};
 
-/// The question how these robots, as they said they are, are to be grouped.
-pub(super) fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot]) -> Question {
+/// The question how these robots are to be grouped.
+pub(super) fn question(model: &Model, round: u32, belief: &Belief, members: Vec<Member>) -> Question {
     let need = |need: &NeedModel| need.asked.clone();
     let tasks = tasks(model, belief);
-    let count = |role: usize| fit.iter().filter(|robot| robot.role.index() == role).count();
+    let count = |role: usize| members.iter().filter(|member| member.role.index() == role).count();
     let is_open = open_tasks(belief, &tasks, model.mission.empty_tasks);
     let quota = |role: usize| {
         let (asked, sizes) = (asked(model, role, &is_open), model.mission.group_sizes);
@@ -29,10 +28,11 @@ pub(super) fn question(model: &Model, round: u32, belief: &Belief, fit: &[&Robot
         needs: model.needs.iter().map(need).collect(),
         quotas: (0..model.roles.len()).map(quota).collect(),
         tasks,
-        members: fit.iter().filter_map(|robot| robot.member(&model.needs)).collect(),
+        members,
         may_idle: model.mission.may_idle,
         history: Vec::new(),
         random_seed: RandomSeed(stream(model.seed, Purpose::Grouping, u64::from(round)).get_seed()),
+        evidence: None,
     }
 }
 

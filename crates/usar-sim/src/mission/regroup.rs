@@ -5,11 +5,25 @@ use rne_core::Assignment;
 use super::question::question;
 use super::{Activity, Mission, Pending, Scene};
 use crate::belief::Beliefs;
-use crate::event::Event;
+use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::robot::Robot;
+use crate::scenario::LevelSource;
+use crate::telemetry::{Now, Telemetry};
 
 impl Mission {
+    /// Lets telemetry, where there is any, do something at this moment of the trial.
+    pub(crate) fn with_telemetry(
+        &self,
+        scene: &mut Scene,
+        act: impl FnOnce(&mut Telemetry, &Now<'_>, &mut EventLog),
+    ) {
+        let Scene { model, beliefs, telemetry: Some(telemetry), log, step, .. } = scene else { return };
+        let presence = |robot: &Robot| self.crew.presence(model, robot);
+        let now = Now { model, team: &beliefs.team, presence: &presence, step: *step, round: self.round };
+        act(telemetry, &now, log);
+    }
+
     /// Pools the beliefs of the groups, and notes what the round cost each robot.
     pub(super) fn end_round(&mut self, scene: &mut Scene) {
         if self.round == 0 {
@@ -21,6 +35,7 @@ impl Mission {
         let unit = scene.model.costs.unit;
         let Beliefs { team, ledger, .. } = &mut *scene.beliefs;
         ledger.end(team, unit, scene.step as f64 * scene.model.dt_s(), went_to_rest);
+        self.with_telemetry(scene, |telemetry, now, log| telemetry.rate(now, log));
         for (agent, robot) in self.crew.agents.iter_mut().zip(&scene.beliefs.team) {
             agent.task = None;
             if let Some([energy, hp]) = agent.levels_at_start {
@@ -47,17 +62,34 @@ impl Mission {
             }
             self.crew.agents[robot.id.index()].levels_at_start = Some([robot.energy, robot.hp]);
         }
+        self.with_telemetry(scene, |telemetry, now, log| telemetry.ask_at_home(now, log));
+        if let Some(telemetry) = scene.telemetry.as_deref_mut() {
+            telemetry.close_round(scene.beliefs.ledger.rounds(), scene.model, scene.step);
+            telemetry.note_question(self.round);
+        }
+        let telemetry = scene.telemetry.as_deref();
+        let as_judged = |robot: &Robot| match (telemetry, &scene.model.telemetry) {
+            (Some(telemetry), Some(rules)) if rules.fitness == LevelSource::Reports => {
+                robot.with_levels(telemetry.levels(rules, robot.id))
+            }
+            _ => robot.clone(),
+        };
         let (mut fit, mut unfit) = (Vec::new(), Vec::new());
         let tasks = self.crew.groups.len() as u16;
         for robot in scene.beliefs.team.iter().filter(|robot| takes_part(robot)) {
             let agent = &self.crew.agents[robot.id.index()];
-            match self.crew.unfit_cause(&scene.model.mission, robot) {
+            match self.crew.unfit_cause(&scene.model.mission, &as_judged(robot)) {
                 None => fit.push(robot),
                 Some(_) if agent.has_given_up_all_rests(tasks) => {} // it stays home this time
                 Some(cause) => unfit.push((robot.id, cause)),
             }
         }
-        let question = question(scene.model, self.round, scene.beliefs.of(None), &fit);
+        let member = |robot: &&Robot| match telemetry {
+            Some(telemetry) => telemetry.member(robot, scene.model),
+            None => robot.member(&scene.model.needs),
+        };
+        let members = fit.iter().filter_map(member).collect();
+        let question = question(scene.model, self.round, scene.beliefs.of(None), members);
         self.crew.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let is_empty = question.members.is_empty();
         self.pending = Some(Pending { question, unfit });
@@ -73,6 +105,9 @@ impl Mission {
         let Some(Pending { unfit, .. }) = self.pending.take() else { return };
         let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
         let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
+        if let Some(telemetry) = scene.telemetry.as_deref_mut() {
+            telemetry.begin_round(&groups);
+        }
         scene.beliefs.ledger.begin(self.round, &groups, scene.step as f64 * scene.model.dt_s());
         scene.log.push(Event::RoundStarted { round: self.round, groups: groups.clone() });
         for (task, members) in scene.model.task_ids().zip(groups) {

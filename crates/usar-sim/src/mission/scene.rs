@@ -11,6 +11,7 @@ use crate::model::Model;
 use crate::navigation::{Goal, Navigator};
 use crate::report::Report;
 use crate::robot::Robot;
+use crate::telemetry::Telemetry;
 
 /// The parts of a trial that decisions look at and change.
 pub struct Scene<'s> {
@@ -24,6 +25,8 @@ pub struct Scene<'s> {
     pub navigator: &'s mut Navigator,
     /// The log of the step's events.
     pub log: &'s mut EventLog,
+    /// What robots say of themselves, where the base does not know how they are.
+    pub telemetry: Option<&'s mut Telemetry>,
     /// Steps done.
     pub step: u64,
     /// Whether an event of the timeline is to come.

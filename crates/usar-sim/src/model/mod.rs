@@ -13,6 +13,7 @@ mod right_of_way;
 mod robot;
 mod scatter;
 mod task;
+mod telemetry;
 mod timeline;
 
 use std::sync::Arc;
@@ -30,6 +31,7 @@ pub use rescuee::RescueeModel;
 pub use right_of_way::{Patience, ReciprocalModel, RetreatModel, RightOfWayModel, RuleKind, SetsModel};
 pub use robot::{RobotModel, RobotSpec};
 pub use task::TaskModel;
+pub use telemetry::{BlackoutModel, LieModel, MediumModel, TelemetryModel};
 pub use timeline::{Action, Due};
 
 use crate::geometry::{RadiationZone, vector};
@@ -87,6 +89,8 @@ pub struct Model {
     pub costs: CostModel,
     /// The rules of the mission.
     pub mission: MissionModel,
+    /// How robots report, are heard, and lie; `None` where everybody knows how every robot is.
+    pub telemetry: Option<TelemetryModel>,
     /// The rules of right of way.
     pub right_of_way: RightOfWayModel,
     /// The planner of routes.
@@ -142,6 +146,7 @@ impl Model {
             roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
             needs: scenario.needs.iter().map(need).collect(),
             tasks: TaskModel::compile_all(scenario, &rescuees, home),
+            telemetry: TelemetryModel::compile(scenario, layout, &robots, seed),
             robots,
             hardest_first: scenario.hardest_first(),
             rescuees,

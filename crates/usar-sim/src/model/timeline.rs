@@ -26,6 +26,16 @@ pub enum Action {
     Fail(RobotId),
     /// A robot loses these percent points of energy and HP.
     Lose(RobotId, [f64; 2]),
+    /// A robot begins to tell a lie, by its number.
+    Lie(RobotId, usize),
+    /// A robot tells no more lies.
+    BeHonest(RobotId),
+    /// A robot has this share of its speed left.
+    Slow(RobotId, f64),
+    /// A robot spends so many times the energy.
+    Fade(RobotId, f64),
+    /// A robot is no longer heard.
+    Mute(RobotId),
     /// These rescuees of a task appear.
     Rescuees(TaskId, Range<usize>),
     /// A task begins.
@@ -61,6 +71,11 @@ pub(super) fn timeline(scenario: &Scenario, layout: &Layout) -> Vec<Due> {
             Happening::SourceDies(name) => Action::Die(source(name)?),
             Happening::RobotFails(robot) => Action::Fail(RobotId(*robot)),
             Happening::RobotLoses { robot, energy, hp } => Action::Lose(RobotId(*robot), [*energy, *hp]),
+            Happening::RobotLies { robot, .. } => Action::Lie(RobotId(*robot), lie_of(scenario, number)),
+            Happening::RobotIsHonest(robot) => Action::BeHonest(RobotId(*robot)),
+            Happening::RobotSlows { robot, factor } => Action::Slow(RobotId(*robot), *factor),
+            Happening::BatteryFades { robot, factor } => Action::Fade(RobotId(*robot), *factor),
+            Happening::RobotDrops(robot) => Action::Mute(RobotId(*robot)),
             Happening::RescueesAppear { task: name, .. } => {
                 let block = blocks.iter().find(|block| block.moment == Some(number))?;
                 Action::Rescuees(task(name), block.ids.clone())
@@ -74,4 +89,10 @@ pub(super) fn timeline(scenario: &Scenario, layout: &Layout) -> Vec<Due> {
         action((number, &moment.event)).map(|action| Due { step, action })
     };
     scenario.moments().into_iter().filter_map(due).collect()
+}
+
+/// The number of the lie of an event among all lies of the trial: those of the list of deceit come first.
+fn lie_of(scenario: &Scenario, event: usize) -> usize {
+    let is_lie = |moment: &&crate::scenario::Moment| matches!(moment.event, Happening::RobotLies { .. });
+    scenario.deceit.len() + scenario.timeline[..event].iter().filter(is_lie).count()
 }

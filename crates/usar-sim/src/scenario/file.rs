@@ -11,11 +11,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use super::debris::{DebrisFile, DebrisShape, Movable, ZoneFile};
+pub use super::deceit::{Channel, Deceit, Lie, Mates, Who};
 pub use super::distribution::{Amount, Distribution};
 pub use super::draws::Draws;
 pub use super::fidelity::Fidelity;
 pub use super::rules::*;
 pub use super::scatter::{Placement, Scatter, Scattered};
+pub use super::telemetry::*;
 pub use super::timeline::{Happening, Moment};
 use super::words::Words;
 
@@ -95,6 +97,16 @@ pub struct ScenarioFile {
     /// Rules of right of way.
     #[serde(default)]
     pub conflicts: ConflictRules,
+    /// How robots report their levels. Without it, and without `medium` and `deceit`, everybody knows how
+    /// every robot is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reports: Option<ReportRules>,
+    /// The medium that carries reports.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub medium: Option<MediumRules>,
+    /// Who lies.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub deceit: Vec<Deceit>,
     /// What the scenario calls its things.
     #[serde(default)]
     pub words: Words,

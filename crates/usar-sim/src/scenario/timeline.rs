@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::checker::{Checker, meant, shown};
+use super::deceit::{self, Channel, Lie};
 use super::file::{DebrisFile, DebrisShape, Door, Point, ScenarioFile, TaskFile, WallFile, ZoneFile};
 use crate::limits;
 
@@ -64,6 +65,35 @@ pub enum Happening {
         #[serde(default)]
         hp: f64,
     },
+    /// A robot lies from now on: `RobotLies(robot: 3, lie: Exaggerate(by: 0.5), on: [Energy])`.
+    RobotLies {
+        /// Id of the robot.
+        robot: u32,
+        /// The lie.
+        lie: Lie,
+        /// What it is about.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        on: Vec<Channel>,
+    },
+    /// A robot tells no more lies: `RobotIsHonest(3)`.
+    RobotIsHonest(u32),
+    /// A robot goes at most this share of its speed from now on, and its gauge does not show it:
+    /// `RobotSlows(robot: 3, factor: 0.5)`.
+    RobotSlows {
+        /// Id of the robot.
+        robot: u32,
+        /// The share, above 0; 1 for its full speed.
+        factor: f64,
+    },
+    /// A robot spends so many times the energy from now on: `BatteryFades(robot: 3, factor: 1.5)`.
+    BatteryFades {
+        /// Id of the robot.
+        robot: u32,
+        /// The factor.
+        factor: f64,
+    },
+    /// The radio of a robot breaks: it is no longer heard. `RobotDrops(3)`.
+    RobotDrops(u32),
     /// Rescuees appear in a task's block, in a grid of their own:
     /// `RescueesAppear(task: "north", grid: (4, 2))`.
     RescueesAppear {
@@ -217,7 +247,21 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
                 let rule = "must name a radiation source that has a name";
                 named(check, &field, name, &source_names, rule);
             }
-            Happening::RobotFails(robot) => self::robot(check, &field, *robot, file),
+            Happening::RobotFails(robot) | Happening::RobotIsHonest(robot) | Happening::RobotDrops(robot) => {
+                self::robot(check, &field, *robot, file);
+            }
+            Happening::RobotLies { robot, lie, on } => {
+                self::robot(check, &format!("{field}.robot"), *robot, file);
+                deceit::told(check, &field, lie, on, file);
+            }
+            Happening::RobotSlows { robot, factor } => {
+                self::robot(check, &format!("{field}.robot"), *robot, file);
+                check.number(format!("{field}.factor"), *factor, limits::SLOWED);
+            }
+            Happening::BatteryFades { robot, factor } => {
+                self::robot(check, &format!("{field}.robot"), *robot, file);
+                check.number(format!("{field}.factor"), *factor, limits::FADED);
+            }
             Happening::RobotLoses { robot, energy, hp } => {
                 self::robot(check, &format!("{field}.robot"), *robot, file);
                 check.number(format!("{field}.energy"), *energy, limits::LOSS);

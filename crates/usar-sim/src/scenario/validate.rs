@@ -4,6 +4,7 @@ use ron_tree::limits::Limit;
 
 use super::checker::{Checker, entry, is_device, meant, names, shown};
 use super::debris::{ROUNDING_M, debris};
+use super::deceit::deceit;
 use super::errands::{errands, places_are_free};
 use super::error::Problem;
 use super::feasibility::feasibility;
@@ -13,6 +14,7 @@ use super::file::{
 use super::homes::homes_are_free;
 use super::rules::rules;
 use super::scatter::scatter;
+use super::telemetry::telemetry;
 use super::timeline::timeline;
 use super::words::Words;
 use crate::limits;
@@ -55,6 +57,8 @@ fn of_values(file: &ScenarioFile) -> Checker {
     sampled(&mut check, file);
     rules(&mut check, file);
     scatter(&mut check, file);
+    telemetry(&mut check, file);
+    deceit(&mut check, file);
     timeline(&mut check, file);
     needs(&mut check, file);
     words(&mut check, &file.words);

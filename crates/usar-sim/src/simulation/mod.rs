@@ -6,6 +6,7 @@
 
 mod charge;
 mod checkpoint;
+mod faults;
 mod moments;
 mod rescue;
 mod setup;
@@ -21,7 +22,7 @@ use thiserror::Error;
 use crate::event::Event;
 use crate::invariant::{Invariants, Overlaps};
 use crate::mission::Ending;
-use crate::record::{DecisionRecord, RobotRecord, Status, TaskRecord, TrialRecord};
+use crate::record::{DecisionRecord, HeardRecord, RobotRecord, Status, TaskRecord, TrialRecord};
 use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::world::World;
@@ -183,7 +184,7 @@ impl Simulation {
         let (mission, mut scene) = self.state.scene(&self.setup.model);
         mission.assign(&decision.assignment, &mut scene);
         if let Some(question) = self.question.take() {
-            let question = Question { history: Vec::new(), ..question };
+            let question = Question { history: Vec::new(), evidence: None, ..question };
             self.state.listeners.decisions.push(DecisionRecord { question, decision, truth });
         }
         Ok(())
@@ -274,7 +275,7 @@ impl Simulation {
         let status = status.unwrap_or_else(|| Status::Failed("it was not run to its end".to_owned()));
         self.state.add_link();
         let (time_s, overlaps, model) = (self.time_s(), self.overlaps(), &self.setup.model);
-        let State { world, listeners, chain, beliefs, mission, .. } = self.state;
+        let State { world, listeners, chain, beliefs, mission, telemetry, .. } = self.state;
         let Listeners { metrics, decisions } = listeners;
         let robots = world.robots.iter().zip(&metrics.robots);
         let tasks = model.tasks.iter().zip(&metrics.tasks);
@@ -289,6 +290,7 @@ impl Simulation {
             ungrouped_hp: metrics.ungrouped[1],
             completed_rounds: metrics.completed_rounds,
             ledger: beliefs.ledger.rounds().to_vec(),
+            heard: telemetry.map(|telemetry| HeardRecord::of(&telemetry)),
             decisions,
             robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, model)).collect(),
             counts: metrics.counts,
@@ -316,6 +318,9 @@ impl Simulation {
         state.log.clear();
         state.happen(model);
         state.sense(model, &mut self.scratch.heard);
+        if state.telemetry.is_some() {
+            state.report(model);
+        }
         done(Stage::Sense);
         state.prepare(model);
         state.is_midway = true;
@@ -355,9 +360,13 @@ impl Simulation {
 
     /// Takes the mission's question, if it has one, and adds the history of earlier rounds.
     fn take_question(&mut self) {
-        let history = || self.state.beliefs.ledger.rounds().to_vec();
-        let asked = self.state.mission.question();
-        self.question = asked.map(|question| Question { history: history(), ..question.clone() });
+        let State { mission, telemetry, beliefs, .. } = &self.state;
+        self.question = mission.question().map(|question| {
+            let rounds = || beliefs.ledger.rounds().to_vec();
+            let history = telemetry.as_ref().map_or_else(rounds, |telemetry| telemetry.history());
+            let evidence = telemetry.as_ref().and_then(|telemetry| telemetry.evidence());
+            Question { history, evidence, ..question.clone() }
+        });
     }
 
     fn check(&mut self) -> Result<(), String> {

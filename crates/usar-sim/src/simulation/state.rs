@@ -6,11 +6,13 @@ use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use super::charge::{bearable, last_event, spend};
+use super::faults::Faults;
 use super::moments::Moments;
 use crate::belief::Beliefs;
 use crate::conflict::{self, Delay, MANY_ROBOTS, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
-use crate::hash::{HashChain, PARTS, part};
+use crate::hash::{ABSENT, HashChain, PARTS, part};
+use crate::ids::RobotId;
 use crate::medium;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
@@ -20,8 +22,10 @@ use crate::planning::Meshes;
 use crate::record::DecisionRecord;
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::{Robot, STANDING_MPS};
+use crate::scenario::LevelSource;
 use crate::sensors::{base, look_around, oneself, team_mates};
 use crate::tally::{Tally, delay_cause};
+use crate::telemetry::Telemetry;
 use crate::world::World;
 
 /// Difference between two sums of the same costs that counts as rounding, as a share.
@@ -45,6 +49,10 @@ pub(crate) struct State {
     pub(super) is_midway: bool,
     pub(super) log: EventLog,
     pub(super) timeline: Moments,
+    /// What is wrong with robots by events of the timeline.
+    pub(super) faults: Faults,
+    /// What robots say of themselves, where the base does not know how they are.
+    pub(super) telemetry: Option<Box<Telemetry>>,
     pub(super) chain: HashChain,
     pub(super) listeners: Listeners,
 }
@@ -107,6 +115,8 @@ impl State {
             is_midway: false,
             log: EventLog::default(),
             timeline: Moments::of(model),
+            faults: Faults::default(),
+            telemetry: Telemetry::of(model),
             chain: HashChain::default(),
             listeners: Listeners { metrics: Metrics::new(model.tasks.len(), tallies), decisions: Vec::new() },
             world,
@@ -129,11 +139,15 @@ impl State {
 
     /// The mission, and the scene in which it decides.
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
-        let Self { mission, beliefs, sent, navigator, log, step, timeline, .. } = self;
+        let Self { mission, beliefs, sent, navigator, log, step, timeline, telemetry, .. } = self;
+        let telemetry = telemetry.as_deref_mut();
         let awaits_event = timeline.is_to_come(model);
         let seen = || step.saturating_sub(model.steps_in(SEEN_AFTER_S));
         let awaits_opening = !timeline.is_empty() && timeline.opens_after(seen(), model);
-        (mission, Scene { model, beliefs, sent, navigator, log, step: *step, awaits_event, awaits_opening })
+        let step = *step;
+        let scene =
+            Scene { model, beliefs, sent, navigator, log, telemetry, step, awaits_event, awaits_opening };
+        (mission, scene)
     }
 
     /// Passes the events of this step from the `from`-th on to the metrics. Returns the number of all events.
@@ -173,6 +187,12 @@ impl State {
         }
     }
 
+    /// Robots look at their mates and say how they are; the base hears them.
+    pub(super) fn report(&mut self, model: &Model) {
+        let (mission, mut scene) = self.scene(model);
+        mission.with_telemetry(&mut scene, Telemetry::step);
+    }
+
     /// Rounds end and begin; the base restocks robots.
     pub(super) fn prepare(&mut self, model: &Model) {
         let (mission, mut scene) = self.scene(model);
@@ -182,13 +202,13 @@ impl State {
     }
 
     pub(super) fn plan(&mut self, model: &Model, scratch: &mut Scratch) {
-        let (mission, beliefs) = (&self.mission, &self.beliefs);
+        let (mission, beliefs, faults) = (&self.mission, &self.beliefs, &self.faults);
         let outlook = Outlook {
             model,
             team: &beliefs.team,
             step: self.step,
             belief_of: |robot| beliefs.of(mission.crew.holder_of(robot, model)),
-            speed_of: |robot: &Robot| mission.crew.speed_of(model, robot),
+            speed_of: |robot: &Robot| faults.speed_of(robot.id, mission.crew.speed_of(model, robot)),
         };
         let in_parallel = scratch.in_parallel && beliefs.team.len() >= MANY_ROBOTS;
         self.navigator.plan(&outlook, &mut scratch.meshes, in_parallel);
@@ -199,6 +219,8 @@ impl State {
         let (mission, beliefs, navigator) = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(&mut scratch.movers);
         movers.extend(beliefs.team.iter().map(|robot| mover(robot, model, mission, beliefs, navigator)));
+        self.faults.slow(&mut movers);
+        self.say_levels(model, &mut movers);
         for (mover, track) in movers.iter_mut().zip(team_mates::tracks(&self.world)) {
             (mover.position, mover.velocity) = (track.position, track.velocity);
         }
@@ -216,6 +238,19 @@ impl State {
         scratch.movers = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
     }
 
+    /// Where robots go first by their levels, they may go by what they said of them.
+    fn say_levels(&self, model: &Model, movers: &mut [Mover<'_>]) {
+        let (Some(telemetry), Some(rules)) = (&self.telemetry, &model.telemetry) else { return };
+        if rules.priority == LevelSource::Truth {
+            return;
+        }
+        for mover in movers {
+            let class = class_of(&self.mission, mover.robot, model);
+            let levels = telemetry.levels(rules, mover.robot);
+            mover.priority = PriorityKey::new(model.right_of_way.priority, mover.robot, class, levels);
+        }
+    }
+
     /// Changes each robot's velocity towards that of its directive, as far as its acceleration allows.
     pub(super) fn drive(&mut self) {
         for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
@@ -229,7 +264,7 @@ impl State {
     /// can no longer act.
     pub(super) fn expose(&mut self, model: &Model) {
         let unit = model.costs.unit;
-        let metrics = &mut self.listeners.metrics;
+        let (metrics, faults) = (&mut self.listeners.metrics, &self.faults);
         for (robot, zones) in self.world.robots_in_zones(model) {
             let speed = robot.velocity.length();
             metrics.robots[robot.id.index()].note_way(f64::from(speed) * model.dt_s());
@@ -238,6 +273,7 @@ impl State {
                 continue;
             }
             let [energy, hp] = step_costs(model, agent, robot, speed, zones);
+            let energy = faults.energy_of(robot.id, energy);
             let percent = [unit.to_percent(energy, robot.spec.energy), unit.to_percent(hp, robot.spec.hp)];
             let [energy, hp] = bearable(robot, percent, &model.mission);
             if energy > 0.0 || hp > 0.0 {
@@ -266,7 +302,10 @@ impl State {
         if timeline.is_empty() {
             return part(&self.log);
         }
-        part(&(&self.log, timeline, world.changed_by_events()))
+        if self.faults.is_empty() {
+            return part(&(&self.log, timeline, world.changed_by_events()));
+        }
+        part(&(&self.log, timeline, world.changed_by_events(), &self.faults))
     }
 
     /// Adds a link to the hash chain.
@@ -290,6 +329,7 @@ impl State {
             part(&self.navigator),
             part(&self.resolver),
             self.part_of_events(),
+            self.telemetry.as_ref().map_or(ABSENT, part),
         ]
     }
 }
@@ -309,6 +349,12 @@ fn step_costs(model: &Model, agent: &Agent, robot: &Robot, speed: f32, zones: us
     costs
 }
 
+/// The rank of a robot's task; after all tasks if it has none.
+fn class_of(mission: &Mission, robot: RobotId, model: &Model) -> u8 {
+    let no_task = model.tasks.len() as u8;
+    mission.crew.agents[robot.index()].task.map_or(no_task, |task| model.tasks[task.index()].rank)
+}
+
 /// A robot as the resolver sees it.
 fn mover<'s>(
     robot: &Robot,
@@ -321,8 +367,7 @@ fn mover<'s>(
     let preferred = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
     let route = navigator.traveller(robot.id).route();
     let agent = &mission.crew.agents[robot.id.index()];
-    let no_task = model.tasks.len() as u8;
-    let class = agent.task.map_or(no_task, |task| model.tasks[task.index()].rank);
+    let class = class_of(mission, robot.id, model);
     let rule = model.right_of_way.priority;
     let is_busy = matches!(agent.activity, Activity::Loading(..) | Activity::Resting(_));
     Mover {

@@ -83,6 +83,26 @@ impl State {
                 self.lose(*robot, [0.0, hp], model);
             }
             Action::Lose(robot, losses) => self.lose(*robot, *losses, model),
+            Action::Slow(robot, factor) => {
+                self.faults.of(*robot).speed = *factor;
+                self.log.push(Event::Slowed { robot: *robot, factor: *factor });
+            }
+            Action::Fade(robot, factor) => {
+                self.faults.of(*robot).energy = *factor;
+                self.log.push(Event::Faded { robot: *robot, factor: *factor });
+            }
+            Action::Lie(robot, lie) => {
+                self.telemetry.iter_mut().for_each(|telemetry| telemetry.begin_lie(*robot, *lie));
+                self.log.push(Event::BeganToLie { robot: *robot });
+            }
+            Action::BeHonest(robot) => {
+                self.telemetry.iter_mut().for_each(|telemetry| telemetry.be_honest(*robot));
+                self.log.push(Event::BecameHonest { robot: *robot });
+            }
+            Action::Mute(robot) => {
+                self.telemetry.iter_mut().for_each(|telemetry| telemetry.mute(*robot));
+                self.log.push(Event::Muted { robot: *robot });
+            }
             Action::Rescuees(task, ids) => {
                 let rescuees = &mut self.world.rescuees[ids.clone()];
                 rescuees.iter_mut().for_each(|rescuee| rescuee.state = RescueeState::Waiting);

@@ -1,8 +1,8 @@
 //! What can be seen of a trial from outside.
 
-use rne_core::TaskId;
+use rne_core::{Question, TaskId};
 
-use super::Simulation;
+use super::{Simulation, State};
 use crate::belief::{Belief, Beliefs};
 use crate::conflict::Delay;
 use crate::event::Event;
@@ -11,12 +11,20 @@ use crate::metrics::Metrics;
 use crate::mission::Mission;
 use crate::model::{Layout, Model};
 use crate::navigation::Navigator;
-use crate::record::DecisionRecord;
+use crate::record::{DecisionRecord, HeardRecord, whole_question};
 use crate::scenario::Scenario;
 use crate::tally::Tally;
 use crate::world::World;
 
 impl Simulation {
+    /// The question of a decision of this trial as it was asked, with its history and its evidence.
+    #[must_use]
+    pub fn question_of(&self, made: &DecisionRecord) -> Question {
+        let State { beliefs, telemetry, .. } = self.state();
+        let heard = telemetry.as_ref().map(|telemetry| HeardRecord::of(telemetry));
+        whole_question(&made.question, beliefs.ledger.rounds(), heard.as_ref())
+    }
+
     /// The fixed part of this trial.
     #[must_use]
     pub fn model(&self) -> &Model {

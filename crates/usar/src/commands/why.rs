@@ -7,7 +7,7 @@ use experiments::experiment::PolicySpec;
 use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
 use experiments::regret::OutcomeLog;
 use experiments::why::{Directed, OtherChoice, directed, exchanges, other_choices};
-use rne_core::{Assignment, Decision, Question, assignments};
+use rne_core::{Assignment, Decision, Member, Question, assignments};
 use serde::Serialize;
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
@@ -79,6 +79,8 @@ struct Account<'a> {
     /// Complete, with the history of the rounds before.
     question: Question,
     decision: &'a Decision,
+    /// The members as they really were.
+    team: &'a [Member],
     /// The trust measure of `directed` and of the robot's exchanges; absent if the policy has none.
     measure: Option<String>,
     /// Unit of the trust measure.
@@ -166,10 +168,7 @@ impl Arguments {
                 exchanges.transpose()?.unwrap_or_default(),
             ))
         });
-        // The recorded question lacks the results of earlier rounds.
-        let before = simulation.beliefs().ledger.rounds().iter();
-        let history = before.filter(|round| round.round < question.round).cloned().collect();
-        let full = Question { history, ..question.clone() };
+        let full = simulation.question_of(record);
         Ok(Account {
             scenario: &asked.scenario.name,
             seed: asked.seed,
@@ -184,6 +183,7 @@ impl Arguments {
             oracle: self.oracle(asked, question, &decision.assignment)?,
             robot: story.transpose()?,
             decision,
+            team: record.team(),
             question: full,
         })
     }

@@ -1,6 +1,7 @@
 //! `usar study`: studies of scenarios and of decisions, and those of single papers.
 
 mod regret;
+mod room;
 mod sensitivity;
 mod yang2021;
 
@@ -8,6 +9,7 @@ use super::verbs;
 
 verbs!(Verb {
     Regret: regret::Arguments,
+    Room: room::Arguments,
     Sensitivity: sensitivity::Arguments,
     /// The paper that started this laboratory: its claims, readings and calibration
     #[command(subcommand, disable_help_subcommand = true)]

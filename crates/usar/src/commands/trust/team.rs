@@ -97,6 +97,7 @@ impl TeamArguments {
             may_idle: false,
             history: Vec::new(),
             random_seed: RandomSeed::from(self.draw_seed),
+            evidence: None,
         })
     }
 

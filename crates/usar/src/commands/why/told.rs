@@ -29,6 +29,7 @@ pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &Trial) -> Res
         writeln!(out, "  {name}: robots {}", ids(decision.assignment.of(task)))?;
     }
     writeln!(out)?;
+    said_and_true(out, account)?;
     match &decision.account {
         PolicyAccount::Rne(of_rne) => rne(out, question, of_rne)?,
         PolicyAccount::Ranking(ranking) => ranked(out, question, ranking)?,
@@ -46,6 +47,22 @@ pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &Trial) -> Res
         robot(out, story, account, asked)?;
     }
     Ok(())
+}
+
+/// What each robot had said of itself beside what was true, where the base had to go by reports.
+fn said_and_true(out: &mut dyn Write, account: &Account) -> Result<(), Failure> {
+    let Some(evidence) = &account.question.evidence else { return Ok(()) };
+    let mut table = headed(["robot", "role", "energy said", "true", "HP said", "true", "heard, s ago"]);
+    let level = |level: Option<f64>| level.map_or("-".to_owned(), |level| format!("{level:.1}"));
+    for (said, is) in account.question.members.iter().zip(account.team) {
+        let last = evidence.reports.iter().rev().find(|report| report.of == said.id);
+        let age = last.map_or("never".to_owned(), |last| format!("{:.1}", account.time_s - last.sent_s));
+        let levels = [said.energy_level, is.energy_level, said.hp_level, is.hp_level].map(level);
+        let cells = [said.id.to_string(), account.question.roles[said.role.index()].clone()];
+        table.add_row(cells.into_iter().chain(levels).chain([age]).map(|cell| right(&cell)));
+    }
+    print_table(out, &table)?;
+    Ok(writeln!(out)?)
 }
 
 fn nats(score: Option<RelativeNeedsEntropy>) -> String {

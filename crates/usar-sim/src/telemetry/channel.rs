@@ -1,0 +1,208 @@
+//! The channel between robots and the base: which messages are heard, and when.
+
+use parry2d::math::Vector;
+use parry2d::query::Ray;
+use rand::RngExt;
+use rand::rngs::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Outline;
+use crate::model::MediumModel;
+use crate::scenario::{Loss, PathLoss};
+use crate::seed::{Purpose, normal, stream_at};
+
+/// The state of the channel, and what became of the messages of each robot.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Channel {
+    /// From when on the channel is free, in seconds.
+    free_from_s: f64,
+    /// The link of each robot to the base.
+    links: Vec<Link>,
+}
+
+/// The link of a robot to the base.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Link {
+    /// Messages that were sent.
+    pub sent: u64,
+    /// Messages that were lost.
+    pub lost: u64,
+    /// Delays of the messages that were heard, summed up, in seconds.
+    pub delay_s: f64,
+    /// Whether the link is in its bad state.
+    is_bad: bool,
+}
+
+/// A message that is about to be sent.
+#[derive(Debug, Clone, Copy)]
+pub struct Sending {
+    /// Seed of the trial.
+    pub seed: u64,
+    /// Number of the sender.
+    pub from: usize,
+    /// Where the sender is, in metres.
+    pub at: Vector,
+    /// The time, in seconds.
+    pub time_s: f64,
+}
+
+impl Channel {
+    /// A free channel, with all links in their good state.
+    #[must_use]
+    pub fn new(robots: usize) -> Self {
+        Self { free_from_s: 0.0, links: vec![Link::default(); robots] }
+    }
+
+    /// The links, by robot.
+    #[must_use]
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// Sends a message. Returns when it is heard, in seconds; `None` if it is lost. A lost message occupies the
+    /// channel, too. Every message has draws of its own, whether they are used or not.
+    pub fn send(&mut self, medium: &MediumModel, sending: Sending) -> Option<f64> {
+        let Sending { seed, from, at, time_s } = sending;
+        let link = &mut self.links[from];
+        let mut draws = stream_at(seed, Purpose::Message, from as u64, link.sent);
+        let (shadow, loss) = (normal(&mut draws, 0.0, 1.0), draws.random::<f64>());
+        link.sent += 1;
+        let is_lost = link.loses(medium.loss, loss, &mut draws)
+            | (at - medium.base).length().gt(&medium.range)
+            | medium.path.is_some_and(|path| shadow > margin(&path, at, medium))
+            | medium.is_blacked_out(at, time_s);
+        let sent_s = self.free_from_s.max(time_s) + medium.air_s;
+        if medium.air_s > 0.0 {
+            self.free_from_s = sent_s;
+        }
+        let heard_s = sent_s + medium.delay_s;
+        if is_lost { link.lost += 1 } else { link.delay_s += heard_s - time_s }
+        (!is_lost).then_some(heard_s)
+    }
+}
+
+impl Link {
+    /// Mean delay of the messages that were heard, in seconds.
+    #[must_use]
+    pub fn mean_delay_s(&self) -> Option<f64> {
+        let heard = self.sent - self.lost;
+        (heard > 0).then(|| self.delay_s / heard as f64)
+    }
+
+    /// Whether the chain of the link loses a message, and its step.
+    fn loses(&mut self, loss: Loss, draw: f64, draws: &mut ChaCha8Rng) -> bool {
+        let step: f64 = draws.random();
+        let Loss::GilbertElliott { p, r, good, bad } = loss else { return false };
+        let is_lost = draw < if self.is_bad { bad } else { good };
+        self.is_bad = if self.is_bad { step >= r } else { step < p };
+        is_lost
+    }
+}
+
+impl MediumModel {
+    fn is_blacked_out(&self, at: Vector, time_s: f64) -> bool {
+        self.blackouts.iter().any(|blackout| {
+            let is_in = |place: Vector| (place - blackout.at).length() <= blackout.radius;
+            blackout.window_s[0] <= time_s && time_s < blackout.window_s[1] && (is_in(at) || is_in(self.base))
+        })
+    }
+}
+
+/// By how many standard deviations of the shadowing the loss of the path from a place to the base is within
+/// the budget.
+fn margin(path: &PathLoss, at: Vector, medium: &MediumModel) -> f64 {
+    let distance = f64::from((at - medium.base).length());
+    let walls = medium.walls.iter().filter(|wall| is_between(wall, at, medium.base)).count();
+    let loss = path.pl0_db + 10.0 * path.n * libm::log10(distance.max(1.0)) + walls as f64 * path.wall_db;
+    (path.budget_db - loss) / path.sigma_db
+}
+
+fn is_between(wall: &Outline, from: Vector, to: Vector) -> bool {
+    let ray = Ray::new(from, to - from);
+    wall.shape.intersects_ray(&wall.pose, &ray, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+
+    fn medium() -> MediumModel {
+        MediumModel {
+            base: Vector::ZERO,
+            range: f32::INFINITY,
+            loss: Loss::None,
+            path: None,
+            walls: Arc::new([]),
+            blackouts: Vec::new(),
+            delay_s: 0.0,
+            air_s: 0.0,
+            is_perfect_at_home: false,
+        }
+    }
+
+    /// Whether each of so many messages from a place, a second apart, is lost.
+    fn losses(medium: &MediumModel, at: Vector, count: u32) -> Vec<bool> {
+        let mut channel = Channel::new(1);
+        let mut send = |i| channel.send(medium, Sending { seed: 5, from: 0, at, time_s: f64::from(i) });
+        (0..count).map(|i| send(i).is_none()).collect()
+    }
+
+    /// Mean loss and mean length of a burst by the formulas of Gilbert and Elliott, computed independently:
+    /// 0.0740741 and 4, 0.0685185 and 2.1033483. Losses of one link follow one another, so that a mean varies
+    /// by (1 + c) / (1 - c) more than that of single draws, with a correlation of 1 - p - r.
+    #[test]
+    fn a_chain_loses_as_many_messages_in_bursts_as_long_as_the_formulas_say() {
+        let chains = [(0.0, 1.0, 0.074_074_074, 4.0), (0.01, 0.8, 0.068_518_519, 2.103_348_303)];
+        for (good, bad, mean_loss, mean_burst) in chains {
+            let loss = Loss::GilbertElliott { p: 0.02, r: 0.25, good, bad };
+            let lost = losses(&MediumModel { loss, ..medium() }, Vector::ZERO, 100_000);
+            let all = lost.iter().filter(|lost| **lost).count() as f64;
+            let bursts = lost.windows(2).filter(|pair| !pair[0] && pair[1]).count() as f64;
+            let error = (mean_loss * (1.0 - mean_loss) / 100_000.0 * 1.73 / 0.27_f64).sqrt();
+            assert!((all / 100_000.0 - mean_loss).abs() < 3.0 * error, "{all}");
+            assert!((all / bursts - mean_burst).abs() < 3.0 * mean_burst / bursts.sqrt(), "{bursts}");
+        }
+    }
+
+    /// Shares that arrive, computed independently: 0.7733726 at 10 m behind a wall, 0.5117398 at 30 m, 1 nearby.
+    #[test]
+    fn a_path_loses_by_distance_and_walls_as_computed_elsewhere() {
+        let path = PathLoss { budget_db: 80.0, pl0_db: 40.0, n: 2.7, wall_db: 10.0, sigma_db: 4.0 };
+        let wall = Outline::disc(Vector::new(5.0, 0.0), 0.5);
+        let cases = [(10.0, vec![wall], 0.773_372_6), (30.0, Vec::new(), 0.511_739_8), (0.2, Vec::new(), 1.0)];
+        for (distance, walls, arrive) in cases {
+            let medium = MediumModel { path: Some(path), walls: walls.into(), ..medium() };
+            let lost = losses(&medium, Vector::new(distance, 0.0), 100_000);
+            let share = lost.iter().filter(|lost| !**lost).count() as f64 / 100_000.0;
+            let error = (arrive * (1.0 - arrive) / 100_000.0_f64).sqrt();
+            assert!((share - arrive).abs() <= 3.0 * error, "{share} {arrive}");
+        }
+    }
+
+    #[test]
+    fn messages_wait_for_one_another_and_are_delayed() {
+        let medium = MediumModel { air_s: 0.012_24, delay_s: 0.2, ..medium() };
+        let mut channel = Channel::new(2);
+        let mut send = |from| channel.send(&medium, Sending { seed: 1, from, at: Vector::ZERO, time_s: 1.0 });
+        let heard = [send(0), send(1)].map(Option::unwrap);
+        assert!((heard[0] - 1.212_24).abs() < 1e-12 && (heard[1] - 1.224_48).abs() < 1e-12, "{heard:?}");
+        assert!((channel.links()[1].mean_delay_s().unwrap() - 0.224_48).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nothing_is_heard_out_of_range_and_in_a_blackout() {
+        let near = MediumModel { range: 10.0, ..medium() };
+        assert_eq!(losses(&near, Vector::new(10.0, 0.0), 2), [false, false]);
+        assert_eq!(losses(&near, Vector::new(10.1, 0.0), 2), [true, true]);
+        let blackout = crate::model::BlackoutModel {
+            at: Vector::new(30.0, 0.0),
+            radius: 5.0,
+            window_s: [1.0, 2.0],
+        };
+        let dark = MediumModel { blackouts: vec![blackout], ..medium() };
+        assert_eq!(losses(&dark, Vector::new(27.0, 0.0), 3), [false, true, false]);
+        assert_eq!(losses(&dark, Vector::new(24.0, 0.0), 3), [false; 3]);
+    }
+}

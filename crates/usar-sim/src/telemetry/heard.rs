@@ -1,0 +1,141 @@
+//! What the base heard: the last that was said of each robot, and all evidence.
+
+use std::collections::BTreeMap;
+
+use rne_core::evidence::is_named;
+use rne_core::{Evidence, Extent, LevelReport, Rating, RobotRound, RoundOutcome};
+use serde::{Deserialize, Serialize};
+
+use crate::ids::RobotId;
+use crate::model::Model;
+use crate::robot::Robot;
+
+/// What the base heard.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Heard {
+    /// What was said of each robot last.
+    last: Vec<Option<Said>>,
+    /// All reports, ratings and rounds, in the order in which they were heard.
+    pub evidence: Evidence,
+    /// The rounds that are over, with the costs as they were said.
+    pub history: Vec<RoundOutcome>,
+    /// How much of the evidence each question had, in their order.
+    pub extents: Vec<Extent>,
+    /// The rounds since which robots have their present names.
+    pub known_since: BTreeMap<u32, u32>,
+    /// All falls of the levels that each robot said, in percent.
+    spent: Vec<[f64; 2]>,
+    /// The same when the last round began.
+    spent_at_start: Vec<[f64; 2]>,
+}
+
+/// What was said of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Said {
+    levels: [f64; 2],
+    needs: BTreeMap<usize, f64>,
+}
+
+impl Heard {
+    pub(super) fn nothing(robots: usize, energy_threshold: f64) -> Self {
+        Self {
+            last: vec![None; robots],
+            evidence: Evidence { energy_threshold, ..Evidence::default() },
+            history: Vec::new(),
+            extents: Vec::new(),
+            known_since: BTreeMap::new(),
+            spent: vec![[0.0; 2]; robots],
+            spent_at_start: vec![[0.0; 2]; robots],
+        }
+    }
+
+    pub(super) fn hear_levels(&mut self, report: LevelReport) {
+        let said = Said { levels: [report.energy_level, report.hp_level], needs: report.needs.clone() };
+        let of = report.of as usize;
+        if let Some(before) = &self.last[of] {
+            for ((spent, before), now) in self.spent[of].iter_mut().zip(before.levels).zip(said.levels) {
+                *spent += (before - now).max(0.0);
+            }
+        }
+        self.last[of] = Some(said);
+        self.evidence.reports.push(report);
+    }
+
+    pub(super) fn hear_rating(&mut self, rating: Rating) {
+        self.evidence.ratings.push(rating);
+    }
+
+    /// The levels of a robot as they were said last, in percent.
+    pub(super) fn levels(&self, robot: RobotId, never_heard: [f64; 2]) -> [f64; 2] {
+        self.last[robot.index()].as_ref().map_or(never_heard, |said| said.levels)
+    }
+
+    /// What the others of a robot's role said of a level on average; `None` if nobody was heard.
+    pub(super) fn mean_of_others(&self, robot: &Robot, team: &[Robot], level: usize) -> Option<f64> {
+        let others = team.iter().filter(|other| other.role == robot.role && other.id != robot.id);
+        let said: Vec<f64> =
+            others.filter_map(|other| Some(self.last[other.id.index()].as_ref()?.levels[level])).collect();
+        (!said.is_empty()).then(|| said.iter().sum::<f64>() / said.len() as f64)
+    }
+
+    /// The needs of a robot as they were said by themselves.
+    pub(super) fn said_needs(&self, robot: RobotId) -> Option<&BTreeMap<usize, f64>> {
+        self.last[robot.index()].as_ref().map(|said| &said.needs)
+    }
+
+    /// The rounds that are over, without robots that have taken a new name since.
+    pub(super) fn history_as_of(&self, known_since: &BTreeMap<u32, u32>) -> Vec<RoundOutcome> {
+        named(&self.history, known_since)
+    }
+
+    pub(super) fn begin_round(&mut self) {
+        self.spent_at_start.clone_from(&self.spent);
+    }
+
+    /// Notes a round that is over: as the base witnessed it, with the costs that were said.
+    pub(super) fn end_round(&mut self, witnessed: &RoundOutcome, trips: &[Trip], model: &Model, time_s: f64) {
+        let mut round = witnessed.clone();
+        let unit = model.costs.unit;
+        for group in &mut round.groups {
+            for member in &mut group.members {
+                let (id, spec) = (member.id as usize, &model.robots[member.id as usize].spec);
+                let [energy, hp] = [0, 1].map(|level| self.spent[id][level] - self.spent_at_start[id][level]);
+                member.energy = unit.of_percent(energy, spec.energy);
+                member.hp = unit.of_percent(hp, spec.hp);
+                self.evidence.ledger.push(RobotRound {
+                    robot: member.id,
+                    round: round.round,
+                    left_s: time_s - round.duration_s,
+                    back_s: trips[id].back_s,
+                    rescued: member.rescued,
+                    turned_back: member.turned_back,
+                    rested: trips[id].rested,
+                    lost: member.lost,
+                });
+            }
+            group.energy = group.members.iter().map(|member| member.energy).sum();
+            group.hp = group.members.iter().map(|member| member.hp).sum();
+        }
+        self.history.push(round);
+    }
+}
+
+/// Rounds without robots that have taken a new name since.
+pub(crate) fn named(rounds: &[RoundOutcome], known_since: &BTreeMap<u32, u32>) -> Vec<RoundOutcome> {
+    let mut rounds = rounds.to_vec();
+    for round in &mut rounds {
+        for group in &mut round.groups {
+            group.members.retain(|member| is_named(known_since, member.id, round.round));
+        }
+    }
+    rounds
+}
+
+/// What the base saw of a robot in this round.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Trip {
+    /// When it was home again, in seconds.
+    pub(super) back_s: Option<f64>,
+    /// Whether it rested.
+    pub(super) rested: bool,
+}

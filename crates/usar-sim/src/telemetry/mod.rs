@@ -1,0 +1,419 @@
+//! Telemetry: what robots say of themselves and of their mates, and what the base hears of it.
+//!
+//! Truth, fault, gauge, lie, medium, base: each stage is a file. Where a scenario has no reports, no medium and
+//! no deceit, there is no telemetry, and the base knows how every robot is.
+
+mod channel;
+mod gauge;
+mod heard;
+mod lie;
+mod witness;
+
+use std::collections::BTreeMap;
+
+use rne_core::{Evidence, LevelReport, Member, NeedId, NeedVector, Rating, RoundOutcome, TaskId};
+use serde::{Deserialize, Serialize};
+
+pub use channel::{Channel, Link};
+pub use heard::Heard;
+pub(crate) use heard::named;
+
+use crate::event::{Event, EventLog};
+use crate::ids::RobotId;
+use crate::model::{LieModel, Model, TelemetryModel};
+use crate::robot::Robot;
+use crate::scenario::{Lie, Measure};
+use channel::Sending;
+use gauge::Reading;
+use heard::Trip;
+use lie::{Told, Topic, said_of_mate};
+use witness::Witnesses;
+
+/// Levels and needs of one robot have numbers of their own in streams of random numbers.
+const TOPICS: u64 = 128;
+
+/// The state of the telemetry.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Telemetry {
+    /// What the base heard.
+    heard: Heard,
+    /// Messages under way, in the order in which they were sent.
+    under_way: Vec<Message>,
+    /// The channel to the base.
+    channel: Channel,
+    /// The lies that each robot tells.
+    told: Vec<Vec<Told>>,
+    /// The last reading of each robot's gauges.
+    read: Vec<Option<[f64; 2]>>,
+    /// Whether the radio of each robot is broken.
+    is_mute: Vec<bool>,
+    witnesses: Witnesses,
+    trips: Vec<Trip>,
+    /// Whether each robot is to take a new name when it is home.
+    takes_new_name: Vec<bool>,
+}
+
+/// A message under way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Message {
+    heard_s: f64,
+    by: RobotId,
+    sent_s: f64,
+    says: Says,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+enum Says {
+    Levels(LevelReport),
+    Rating(Rating),
+}
+
+/// Where a robot is in the mission.
+#[derive(Debug, Clone, Copy)]
+pub struct Presence {
+    /// The task of its group.
+    pub task: Option<TaskId>,
+    /// Whether it is at home.
+    pub is_home: bool,
+    /// Whether it works in the field.
+    pub is_in_field: bool,
+    /// Whether it is at its rest place.
+    pub is_resting: bool,
+    /// What is known to slow it, as a share of its speed: no guide, a load.
+    pub known_loss: f64,
+}
+
+/// The trial at one step, as telemetry needs it.
+pub struct Now<'n> {
+    /// The model.
+    pub model: &'n Model,
+    /// The robots as they know themselves.
+    pub team: &'n [Robot],
+    /// Where each is.
+    pub presence: &'n dyn Fn(&Robot) -> Presence,
+    /// The step.
+    pub step: u64,
+    /// The round.
+    pub round: u32,
+}
+
+impl Now<'_> {
+    fn time_s(&self) -> f64 {
+        self.step as f64 * self.model.dt_s()
+    }
+}
+
+impl Telemetry {
+    /// The state before the first report; `None` where the model has no telemetry.
+    #[must_use]
+    pub(crate) fn of(model: &Model) -> Option<Box<Self>> {
+        let (rules, robots) = (model.telemetry.as_ref()?, model.robots.len());
+        let told = |lies: &Vec<usize>| lies.iter().map(|lie| Told::new(*lie)).collect();
+        Some(Box::new(Self {
+            heard: Heard::nothing(robots, model.mission.low_energy.threshold),
+            under_way: Vec::new(),
+            channel: Channel::new(robots),
+            told: rules.told_by.iter().map(told).collect(),
+            read: vec![None; robots],
+            is_mute: vec![false; robots],
+            witnesses: Witnesses::of_nobody(robots),
+            trips: vec![Trip::default(); robots],
+            takes_new_name: vec![false; robots],
+        }))
+    }
+
+    /// What the base heard.
+    #[must_use]
+    pub fn heard(&self) -> &Heard {
+        &self.heard
+    }
+
+    /// The links of the robots to the base.
+    #[must_use]
+    pub fn links(&self) -> &[Link] {
+        self.channel.links()
+    }
+
+    /// A robot begins to tell one of the lies of the timeline.
+    pub(crate) fn begin_lie(&mut self, robot: RobotId, lie: usize) {
+        self.told[robot.index()].push(Told::new(lie));
+    }
+
+    /// A robot tells no more lies.
+    pub(crate) fn be_honest(&mut self, robot: RobotId) {
+        self.told[robot.index()].clear();
+    }
+
+    /// The radio of a robot breaks.
+    pub(crate) fn mute(&mut self, robot: RobotId) {
+        self.is_mute[robot.index()] = true;
+    }
+
+    /// The part of a step: robots look at their mates, report when it is time, and are heard.
+    pub(crate) fn step(&mut self, now: &Now<'_>, log: &mut EventLog) {
+        let Some(rules) = &now.model.telemetry else { return };
+        if now.step.is_multiple_of(now.model.sensing_steps) {
+            self.look(now, rules);
+        }
+        if now.step.is_multiple_of(rules.every_steps) {
+            now.team.iter().filter(|robot| robot.is_able()).for_each(|robot| self.report(robot, now, log));
+        }
+        self.deliver(now.time_s(), log);
+    }
+
+    /// The base asks the robots at home how they are, before a round.
+    pub(crate) fn ask_at_home(&mut self, now: &Now<'_>, log: &mut EventLog) {
+        let is_home = |robot: &&Robot| robot.is_able() && (now.presence)(robot).is_home;
+        for robot in now.team.iter().filter(is_home) {
+            if std::mem::take(&mut self.takes_new_name[robot.id.index()]) {
+                self.heard.known_since.insert(robot.id.0, now.round);
+            }
+            self.report(robot, now, log);
+        }
+        self.deliver(now.time_s(), log);
+    }
+
+    /// A question is asked: what it has of the evidence.
+    pub(crate) fn note_question(&mut self, round: u32) {
+        let extent = self.heard.evidence.extent(round, self.heard.known_since.clone());
+        self.heard.extents.push(extent);
+    }
+
+    /// The evidence of the last question.
+    #[must_use]
+    pub(crate) fn evidence(&self) -> Option<Evidence> {
+        self.heard.extents.last().map(|extent| self.heard.evidence.as_of(extent))
+    }
+
+    /// The levels of a robot as they were heard last, in percent.
+    #[must_use]
+    pub(crate) fn levels(&self, rules: &TelemetryModel, robot: RobotId) -> [f64; 2] {
+        self.heard.levels(robot, rules.mean_levels)
+    }
+
+    /// A robot as a member of a team that is to be grouped, as it was heard last. What the base hands out and
+    /// what a robot carries, the base knows.
+    #[must_use]
+    pub(crate) fn member(&self, robot: &Robot, model: &Model) -> Option<Member> {
+        let rules = model.telemetry.as_ref()?;
+        let heard = robot.with_levels(self.levels(rules, robot.id));
+        let member = heard.member(&model.needs)?;
+        let Some(said) = self.heard.said_needs(robot.id).filter(|said| !said.is_empty()) else {
+            return Some(member);
+        };
+        let mut needs = member.needs.values().to_vec();
+        said.iter().for_each(|(place, said)| needs[*place] = *said);
+        Some(Member { needs: NeedVector::new(needs).ok()?, ..member })
+    }
+
+    /// A round begins with these groups.
+    pub(crate) fn begin_round(&mut self, groups: &[Vec<RobotId>]) {
+        self.heard.begin_round();
+        self.witnesses.begin_round(groups);
+        self.trips.fill(Trip::default());
+    }
+
+    /// A round is over: robots say what they saw of their mates.
+    pub(crate) fn rate(&mut self, now: &Now<'_>, log: &mut EventLog) {
+        let Some(rules) = &now.model.telemetry else { return };
+        for robot in now.team.iter().filter(|robot| robot.is_able()) {
+            for rating in self.witnesses.ratings(rules, robot.id, now.round) {
+                let top_mps = now.team[rating.of as usize].spec.speed_mps;
+                let said = self.told_of_mates(rules, robot.id, now.time_s());
+                let said = said.map_or(Some(rating), |lie| said_of_mate(&lie.lie, rating, top_mps, rules));
+                if let Some(rating) = said {
+                    self.send(Says::Rating(rating), robot, now, log);
+                }
+            }
+        }
+        self.deliver(now.time_s(), log);
+    }
+
+    /// The base closes its books of a round, once the robots at home have reported.
+    pub(crate) fn close_round(&mut self, rounds: &[RoundOutcome], model: &Model, step: u64) {
+        let time_s = step as f64 * model.dt_s();
+        for witnessed in rounds.iter().skip(self.heard.history.len()) {
+            self.heard.end_round(witnessed, &self.trips, model, time_s);
+        }
+    }
+
+    /// The rounds as the base heard of them, as far as their robots still have their names.
+    #[must_use]
+    pub(crate) fn history(&self) -> Vec<RoundOutcome> {
+        self.heard.history_as_of(&self.heard.known_since)
+    }
+
+    /// The lie about mates that a robot tells at a time.
+    fn told_of_mates<'r>(&self, rules: &'r TelemetryModel, by: RobotId, time_s: f64) -> Option<&'r LieModel> {
+        let lies = self.told[by.index()].iter().map(|told| &rules.lies[told.lie as usize]);
+        lies.into_iter().find(|lie| lie.is_told_at(time_s) && lie.lie.is_about_mates())
+    }
+
+    fn look(&mut self, now: &Now<'_>, rules: &TelemetryModel) {
+        let presences: Vec<Presence> = now.team.iter().map(now.presence).collect();
+        for ((robot, presence), trip) in now.team.iter().zip(&presences).zip(&mut self.trips) {
+            if presence.is_resting {
+                trip.rested = true;
+                let whitewashes = |told: &Told| {
+                    let lie = &rules.lies[told.lie as usize];
+                    matches!(lie.lie, Lie::Whitewash { .. }) && lie.is_told_at(now.time_s())
+                };
+                self.takes_new_name[robot.id.index()] |= self.told[robot.id.index()].iter().any(whitewashes);
+            }
+            if presence.is_home && trip.back_s.is_none() {
+                trip.back_s = Some(now.time_s());
+            }
+        }
+        let (heard, mean) = (&self.heard, rules.mean_levels);
+        let speed_need = now.model.needs.iter().position(|need| need.measures == Measure::Speed);
+        for (robot, presence) in now.team.iter().zip(&presences) {
+            if !presence.is_in_field || !robot.is_able() {
+                continue;
+            }
+            let sensing = robot.sensing_range() as f32;
+            self.witnesses.look(robot, |mate| {
+                let (mate, there) = (&now.team[mate.index()], &presences[mate.index()]);
+                let is_seen = there.is_in_field && (mate.position - robot.position).length() <= sensing;
+                let said = || {
+                    let said = heard.said_needs(mate.id).and_then(|needs| needs.get(&speed_need?).copied());
+                    said.unwrap_or_else(|| mate.speed_at(heard.levels(mate.id, mean)[1]))
+                };
+                is_seen.then(|| [f64::from(mate.velocity.length()) / there.known_loss, said()])
+            });
+        }
+    }
+
+    /// Lets a robot read its gauges and say how it is.
+    fn report(&mut self, robot: &Robot, now: &Now<'_>, log: &mut EventLog) {
+        let Some(rules) = &now.model.telemetry else { return };
+        let id = robot.id;
+        let gauges = &rules.gauges[robot.role.index()];
+        let last = self.read[id.index()];
+        let reading = |level: usize, is: f64| {
+            let of = u64::from(id.0) * TOPICS + level as u64;
+            let reading = Reading { seed: rules.seed, of, step: now.step, time_s: now.time_s() };
+            let shown = gauge::read(&gauges[level], is, reading);
+            shown.or(last.map(|last| last[level])).unwrap_or_else(|| is.clamp(0.0, 100.0))
+        };
+        let read = [reading(0, robot.energy), reading(1, robot.hp)];
+        self.read[id.index()] = Some(read);
+        let (levels, needs) = self.said(robot, read, now);
+        let report = LevelReport {
+            of: id.0,
+            by: id.0,
+            round: now.round,
+            sent_s: now.time_s(),
+            heard_s: now.time_s(),
+            energy_level: levels[0],
+            hp_level: levels[1],
+            needs,
+            sd: [gauges[0].sd, gauges[1].sd],
+        };
+        let other = self.told[id.index()].iter().find_map(|told| {
+            let lie = &rules.lies[told.lie as usize];
+            let Lie::Impersonate { name } = lie.lie else { return None };
+            lie.is_told_at(now.time_s()).then_some(name)
+        });
+        let false_one = other.map(|name| LevelReport { of: name, by: name, ..report.clone() });
+        for report in [Some(report), false_one].into_iter().flatten() {
+            self.send(Says::Levels(report), robot, now, log);
+        }
+    }
+
+    /// What a robot says of its levels and needs, when it read these levels.
+    fn said(
+        &mut self,
+        robot: &Robot,
+        read: [f64; 2],
+        now: &Now<'_>,
+    ) -> ([f64; 2], BTreeMap<usize, f64>) {
+        let (mut levels, mut needs) = (read, BTreeMap::new());
+        let Some(rules) = &now.model.telemetry else { return (levels, needs) };
+        let mut told = std::mem::take(&mut self.told[robot.id.index()]);
+        for told in &mut told {
+            let lie = &rules.lies[told.lie as usize];
+            if !lie.lie.is_about_levels() || !lie.is_told_at(now.time_s()) {
+                continue;
+            }
+            let honest = robot.with_levels(read).needs(&now.model.needs);
+            let honest = honest.map(|needs| needs.values().to_vec()).unwrap_or_default();
+            let fresh = robot.fresh_needs(&now.model.needs);
+            let of_fresh = |need: NeedId| 100.0 * honest[need.index()] / fresh[need.index()].max(f64::MIN_POSITIVE);
+            let topics: Vec<f64> = read.into_iter().chain(lie.on_needs.iter().map(|need| of_fresh(*need))).collect();
+            if told.at_onset.is_empty() {
+                told.at_onset.clone_from(&topics);
+            }
+            let topic = |place: usize, number: usize, others: Option<f64>| Topic {
+                seed: rules.seed,
+                of: u64::from(robot.id.0) * TOPICS + number as u64,
+                step: now.step,
+                time_s: now.time_s(),
+                at_onset: told.at_onset[place],
+                others,
+            };
+            for level in (0..2).filter(|level| lie.on_levels[*level]) {
+                let others = self.heard.mean_of_others(robot, now.team, level);
+                levels[level] = lie.said(read[level], &topic(level, level, others), 100.0);
+            }
+            let most = if rules.clip { 100.0 } else { f64::MAX };
+            for (place, need) in lie.on_needs.iter().enumerate() {
+                let said = lie.said(topics[2 + place], &topic(2 + place, 2 + need.index(), None), most);
+                needs.insert(need.index(), (said * fresh[need.index()] / 100.0).min(1e12));
+            }
+        }
+        self.told[robot.id.index()] = told;
+        (levels, needs)
+    }
+
+    /// Sends a message. At home it is heard at once, unless the scenario says otherwise.
+    fn send(
+        &mut self,
+        says: Says,
+        robot: &Robot,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) {
+        let Some(rules) = &now.model.telemetry else { return };
+        if self.is_mute[robot.id.index()] {
+            return;
+        }
+        let by_radio = |medium: &crate::model::MediumModel| {
+            !(medium.is_perfect_at_home && (now.presence)(robot).is_home)
+        };
+        let time_s = now.time_s();
+        let heard_s = match rules.medium.as_ref().filter(|medium| by_radio(medium)) {
+            None => Some(time_s),
+            Some(medium) => {
+                let at = robot.position;
+                self.channel.send(medium, Sending { seed: rules.seed, from: robot.id.index(), at, time_s })
+            }
+        };
+        match heard_s {
+            Some(heard_s) => self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, says }),
+            None => log.push(Event::Lost { robot: robot.id }),
+        }
+    }
+
+    /// Lets the base hear the messages that have arrived by now.
+    fn deliver(&mut self, time_s: f64, log: &mut EventLog) {
+        let mut messages = std::mem::take(&mut self.under_way);
+        let has_arrived = |message: &Message| message.heard_s <= time_s;
+        if !messages.iter().any(has_arrived) {
+            self.under_way = messages;
+            return;
+        }
+        let mut arrived: Vec<Message> = messages.iter().filter(|message| has_arrived(message)).cloned().collect();
+        messages.retain(|message| !has_arrived(message));
+        self.under_way = messages;
+        arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
+        for Message { heard_s, by, sent_s, says } in arrived {
+            if heard_s > sent_s {
+                log.push(Event::Heard { robot: by, sent_s });
+            }
+            match says {
+                Says::Levels(report) => self.heard.hear_levels(LevelReport { heard_s, ..report }),
+                Says::Rating(rating) => self.heard.hear_rating(rating),
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! `usar study room`: how much grouping matters in a world.
+
+use std::sync::Arc;
+
+use experiments::comparison::{digits, short};
+use experiments::experiment::{Experiment, Overrides, split_list};
+use experiments::sweep::folder::{Folder, Opening};
+use reports::table::{headed, right};
+use serde_json::json;
+use statistics::{Moments, cautious};
+
+use crate::arguments::{ProgressArguments, ShownArguments, count};
+use crate::library;
+use crate::prelude::*;
+
+/// The policy that the others are compared with.
+const DRAW: &str = "RANDOM";
+
+/// The oracle looks at this metric: the rate does not reward rounds that take long.
+const ORACLES: [&str; 2] = [
+    "best=ORACLE(metric: \"rescue_rate\")",
+    "worst=ORACLE(metric: \"rescue_rate\", pick: Worst)",
+];
+
+/// Rules that the paper compares; they are tried where no others are named.
+const RULES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
+
+/// Does grouping matter in this world? Every rule, the best and the worst choice against a fair draw
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A world in which the best and the worst grouping rescue about the same cannot tell rules apart, and a lie costs \
+nothing in it. The best and the worst choice are those of an oracle that plays every assignment to the end of \
+the round and takes the one with the most, or the fewest, rescuees a minute: neither looks further ahead.
+
+The folder is that of a sweep, with all of its tables; an interrupted study resumes.
+
+Examples:
+  usar study room tunnel
+  usar study room scenarios/paper.ron --trials 100 --policies RNE,DIS")]
+pub(crate) struct Arguments {
+    /// Scenario (RON)
+    #[arg(value_name = "FILE", value_parser = library::path)]
+    file: PathBuf,
+    /// Trials of each policy, in each case or candidate
+    #[arg(long, default_value_t = 32, value_parser = count(8..=1_000_000))]
+    trials: u32,
+    /// Policies, separated by commas [default: RNE,DIS,ENG,HP_DIS]
+    #[arg(long)]
+    policies: Option<String>,
+    /// Seed of the first trial
+    #[arg(long, default_value_t = 1)]
+    first_seed: u64,
+    /// File or folder to write [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    progress: ProgressArguments,
+    #[command(flatten)]
+    shown: ShownArguments,
+}
+
+/// A policy beside the draw.
+struct Row {
+    policy: String,
+    mean: Option<f64>,
+    /// Difference from the draw, and its 95 % interval.
+    difference: Option<f64>,
+    interval: Option<[f64; 2]>,
+    /// The same in percent of the draw.
+    percent: Option<f64>,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let experiment = self.experiment(registry)?;
+        let named = Path::new("results").join(format!("room-{}", experiment.name));
+        let place = self.out.clone().unwrap_or(named);
+        let note = &mut |note: String| tell(format_args!("note: {note}"));
+        let mut folder = Folder::open(&place, Arc::new(experiment), Opening::default(), note)?;
+        self.progress.run_missing(&mut folder, None, None)?;
+        folder.finish(&STOP)?;
+        let rows = rows(&folder)?;
+        if self.shown.is_json() {
+            let row = |row: &Row| {
+                json!({"policy": row.policy, "mean": row.mean, "difference": row.difference,
+                    "interval": row.interval, "percent": row.percent})
+            };
+            return print_json(&json!({"rows": rows.iter().map(row).collect::<Vec<_>>()}));
+        }
+        let words = format!("rescuees.total of {} trials", self.trials);
+        writeln!(out, "{}: {words}, paired by seed; minus {DRAW}", folder.experiment().name)?;
+        let mut table = headed(["policy", "mean", "minus a draw", "95 % interval", "in %"]);
+        for row in &rows {
+            let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
+            let interval = row.interval.map_or("-".to_owned(), |[a, b]| format!("{} to {}", short(a), short(b)));
+            let percent = row.percent.map_or("-".to_owned(), |percent| format!("{percent:+.1}"));
+            let mean = right(&row.mean.map_or("-".to_owned(), |mean| digits(mean, 4)));
+            table.add_row([
+                row.policy.as_str().into(),
+                mean,
+                number(row.difference),
+                right(&interval),
+                right(&percent),
+            ]);
+        }
+        print_table(out, &table)
+    }
+
+    fn experiment(&self, registry: &Registry) -> Result<Experiment, Failure> {
+        let own = self.policies.as_ref().map(|list| split_list(list).into_iter().map(str::to_owned).collect());
+        let rules: Vec<String> = own.unwrap_or_else(|| RULES.map(str::to_owned).to_vec());
+        let others = [DRAW].into_iter().chain(ORACLES).map(str::to_owned);
+        let policies = Some(rules.into_iter().filter(|rule| rule != DRAW).chain(others).collect());
+        let (trials, first_seed) = (Some(self.trials), Some(self.first_seed));
+        let overrides = Overrides { policies, trials, first_seed, ..Overrides::default() };
+        Experiment::load(&self.file, &overrides, registry)
+    }
+}
+
+fn rows(folder: &Folder) -> Result<Vec<Row>, Failure> {
+    let experiment = folder.experiment();
+    let metric = experiment.metrics.named("rescuees.total")?;
+    let value = |policy: usize, trial: u32| folder.value((0, policy, trial), metric);
+    let values = |policy: usize| (1..=experiment.trials).filter_map(move |trial| value(policy, trial));
+    let draw = experiment.policies.iter().position(|policy| policy.label == DRAW);
+    let draw = draw.ok_or_else(|| Failure::run("the fair draw was not run"))?;
+    let of_draw = Moments::of(&values(draw).collect::<Vec<_>>()).mean;
+    let row = |(place, label): (usize, &str)| {
+        let pairs = (1..=experiment.trials).filter_map(|trial| Some(value(place, trial)? - value(draw, trial)?));
+        let differences: Vec<f64> = pairs.collect();
+        let difference = Moments::of(&differences).mean.filter(|_| place != draw);
+        Row {
+            policy: label.to_owned(),
+            mean: Moments::of(&values(place).collect::<Vec<_>>()).mean,
+            difference,
+            interval: cautious::interval(&differences, 0.95).filter(|_| place != draw),
+            percent: difference.zip(of_draw).filter(|(_, of)| *of > 0.0).map(|(it, of)| 100.0 * it / of),
+        }
+    };
+    Ok(experiment.policies.iter().map(|policy| policy.label.as_str()).enumerate().map(row).collect())
+}
