@@ -14,7 +14,10 @@ use crate::support::{paper_with, policy};
 
 /// paper.ron with these sections in addition.
 fn paper_and(sections: &str) -> Scenario {
-    paper_with(&[("    // Normal distributions, clamped", &format!("{sections}\n    // Normal distributions, clamped"))])
+    paper_with(&[(
+        "    // Normal distributions, clamped",
+        &format!("{sections}\n    // Normal distributions, clamped"),
+    )])
 }
 
 fn run(scenario: &Scenario, name: &str, seed: u64) -> TrialRecord {
@@ -77,7 +80,11 @@ fn under_dis_a_lie_about_oneself_changes_evidence_and_events_only() {
         "BadMouth(of: All)",
     ];
     lies.par_iter().for_each(|lie| {
-        let on = if lie.contains("as:") || lie.contains("at_rest") || lie.contains("of:") { "" } else { ", on: [Energy, Hp, Need(\"v\")]" };
+        let on = if lie.contains("as:") || lie.contains("at_rest") || lie.contains("of:") {
+            ""
+        } else {
+            ", on: [Energy, Hp, Need(\"v\")]"
+        };
         let liar = format!("reports: (every_s: 10), deceit: [(who: Robots([3, 7]), lie: {lie}{on})],");
         let found = run(&paper_and(&liar), "DIS", 2);
         let parts = differing(&honest, &found);
@@ -90,7 +97,9 @@ fn under_dis_a_lie_about_oneself_changes_evidence_and_events_only() {
 #[test]
 fn no_policy_sees_the_truth() {
     let text = |energy: f64| {
-        format!("timeline: [(at_s: 0, event: RobotDrops(5)), (at_s: 100, event: RobotLoses(robot: 5, energy: {energy}))],")
+        format!(
+            "timeline: [(at_s: 0, event: RobotDrops(5)), (at_s: 100, event: RobotLoses(robot: 5, energy: {energy}))],"
+        )
     };
     let questions = |energy: f64| -> Vec<Question> {
         let scenario = paper_and(&text(energy));
@@ -116,7 +125,10 @@ fn no_policy_sees_the_truth() {
     let never_heard = of(&full[2]).unwrap();
     assert_eq!((never_heard.energy_level, never_heard.hp_level), (Some(80.0), Some(90.0)));
     assert_eq!(of(&full[2]), of(&empty[2]), "5 points less, and nobody heard of it");
-    assert_eq!(full[2].evidence.as_ref().map(|evidence| evidence.reports.iter().any(|report| report.of == 5)), Some(false));
+    assert_eq!(
+        full[2].evidence.as_ref().map(|evidence| evidence.reports.iter().any(|report| report.of == 5)),
+        Some(false)
+    );
 }
 
 #[test]
@@ -163,7 +175,8 @@ fn a_record_gives_each_question_back_with_its_evidence() {
 #[test]
 fn one_robot_that_says_hp_31_regroups_the_teams_that_another_computation_found() {
     let policies = ["RNE", "HP_DIS", "ENG", "DIS"];
-    let changed: Vec<[bool; 4]> = (0..1_000_u64).into_par_iter().map(|team| changes(team, policies)).collect();
+    let changed: Vec<[bool; 4]> =
+        (0..1_000_u64).into_par_iter().map(|team| changes(team, policies)).collect();
     let share = |policy: usize| changed.iter().filter(|changed| changed[policy]).count() as f64 / 10.0;
     let shares = [0, 1, 2, 3].map(share);
     assert!((shares[0] - 73.0).abs() <= 4.0 && (shares[1] - 49.0).abs() <= 5.0, "{shares:?}");
@@ -192,7 +205,8 @@ fn changes(team: u64, policies: [&str; 4]) -> [bool; 4] {
     }
     let liar = draws.random_range(0..12_u32);
     let paper = crate::support::paper_text();
-    let (start, end) = (paper.find("    team: [").unwrap(), paper.find("    // The ratios between roles").unwrap());
+    let (start, end) =
+        (paper.find("    team: [").unwrap(), paper.find("    // The ratios between roles").unwrap());
     let question = |deceit: &str| {
         let text = format!("{}    team: [{text}],\n{deceit}\n{}", &paper[..start], &paper[end..]);
         let scenario = Scenario::parse(&text, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));

@@ -279,7 +279,8 @@ mod tests {
     fn the_base_compares_what_robots_say_they_spent() {
         let said = [(0, 80.0, 68.0), (1, 70.0, 60.0), (2, 90.0, 76.0), (3, 60.0, 35.0)];
         let reports = [1, 2].into_iter().flat_map(|round| {
-            said.iter().map(move |(id, first, then)| report(*id, round, if round == 1 { *first } else { *then }))
+            said.iter()
+                .map(move |(id, first, then)| report(*id, round, if round == 1 { *first } else { *then }))
         });
         let ledger = (0..4).map(|id| entry(id, false)).collect();
         let evidence =

@@ -72,7 +72,7 @@ fn what_is_no_question_is_refused_with_the_reason() {
             "\"turn\": 2",
             not_json(
                 "unknown field `turn`, expected one of `schema_version`, `round`, `roles`, `needs`, `tasks`, \
-                 `quotas`, `members`, `may_idle`, `history`, `random_seed` at line 2 column 29",
+                 `quotas`, `members`, `may_idle`, `history`, `random_seed`, `evidence` at line 2 column 29",
             ),
         ),
         (

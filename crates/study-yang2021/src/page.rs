@@ -12,7 +12,9 @@ use experiments::sweep::owned::Report;
 use crate::claims::{CLAIMS, Example, Judged, LEAST_TRIALS};
 use crate::predictions::{Prediction, over_worlds};
 use crate::scenarios::Standing;
-use crate::table::{claims_table, examples_table, power_table, predictions_table, ranges_table, verdicts_table};
+use crate::table::{
+    claims_table, examples_table, power_table, predictions_table, ranges_table, verdicts_table,
+};
 
 /// A section of the output.
 pub struct Section {

@@ -12,8 +12,10 @@ use xxhash_rust::xxh3::xxh3_128;
 pub const PERIOD_S: f64 = 10.0;
 
 /// The parts of the state, in the order of [`Link::parts`].
-pub const PARTS: [&str; 10] =
-    ["bodies", "robots", "debris", "rescuees", "beliefs", "mission", "routes", "resolver", "events", "evidence"];
+pub const PARTS: [&str; 10] = [
+    "bodies", "robots", "debris", "rescuees", "beliefs", "mission", "routes", "resolver", "events",
+    "evidence",
+];
 
 /// The hash of a part that a trial does not have. It is not in the digest.
 pub(crate) const ABSENT: u128 = 0;

@@ -34,8 +34,9 @@ const READINGS: &str = "\
 /// # Panics
 /// A scenario is not what a calibration wrote, or the disk does not take the files.
 pub fn write_worlds(out: &Path, chosen: &Path, best: &[PathBuf]) {
-    let text =
-        |folder: &Path| std::fs::read_to_string(folder.join("calibrated.ron")).expect("a finished calibration");
+    let text = |folder: &Path| {
+        std::fs::read_to_string(folder.join("calibrated.ron")).expect("a finished calibration")
+    };
     let chosen = text(chosen);
     let mut sweep = READINGS.to_owned();
     for folder in best {

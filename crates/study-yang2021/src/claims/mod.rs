@@ -244,8 +244,7 @@ impl Judged {
 /// does not hold if it does not hold in one. `None` if there is only one such world.
 #[must_use]
 pub(crate) fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
-    let calibrated: Vec<&Judged> =
-        judged.iter().filter(|world| world.standing.is_in_ensemble()).collect();
+    let calibrated: Vec<&Judged> = judged.iter().filter(|world| world.standing.is_in_ensemble()).collect();
     let verdict = |claim: usize| Verdict::over(calibrated.iter().map(|world| world.of_all[claim].verdict));
     (calibrated.len() > 1).then(|| (0..CLAIMS.len()).map(verdict).collect())
 }

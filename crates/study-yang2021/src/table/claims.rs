@@ -121,7 +121,8 @@ pub(crate) fn verdicts_table(judged: &[Judged]) -> Table {
             main.iter().flat_map(|scenario| [&scenario.of_few, &scenario.of_all].map(|of| of[i].verdict));
         let together = over_worlds.as_ref().map(|verdicts| verdicts[i]);
         let verdicts = verdicts.chain(together).map(|verdict| verdict.words().to_owned());
-        let last = (readings.len() > 1).then(|| counted(readings.iter().map(|world| world.of_all[i].verdict)));
+        let last =
+            (readings.len() > 1).then(|| counted(readings.iter().map(|world| world.of_all[i].verdict)));
         table.add_row(std::iter::once(claim.words.to_owned()).chain(verdicts).chain(last).map(Cell::new));
     }
     table
@@ -153,7 +154,8 @@ pub(crate) fn ranges_table(judged: &[Judged]) -> Option<Table> {
     for (i, claim) in CLAIMS.iter().enumerate() {
         table.add_row([claim.words]);
         for (j, part) in claim.parts.iter().enumerate() {
-            let found = |world: &&Judged| Some((world.of_all[i].parts[j].difference?, world.scenario.clone()));
+            let found =
+                |world: &&Judged| Some((world.of_all[i].parts[j].difference?, world.scenario.clone()));
             let mut found: Vec<(f64, String)> = readings.iter().filter_map(found).collect();
             found.sort_by(|a, b| a.0.total_cmp(&b.0));
             let ends = [found.first(), found.last()];

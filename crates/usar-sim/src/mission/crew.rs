@@ -13,8 +13,8 @@ use crate::ids::RobotId;
 use crate::model::{MissionModel, Model};
 use crate::navigation::Goal;
 use crate::robot::Robot;
-use crate::telemetry::Presence;
 use crate::scenario::{RestAtHome, RoundEnd};
+use crate::telemetry::Presence;
 
 /// The group of one task in the current round.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -165,9 +165,8 @@ impl TelemetryModel {
 impl MediumModel {
     fn compile(rules: &MediumRules, layout: &Layout, robots: &[Arc<RobotModel>]) -> Self {
         let pieces = layout.debris.iter().enumerate();
-        let fixed = pieces.filter(|(number, piece)| {
-            piece.movable.is_none() && !layout.gates.contains_key(number)
-        });
+        let fixed =
+            pieces.filter(|(number, piece)| piece.movable.is_none() && !layout.gates.contains_key(number));
         let on_air = |kbps: f64| (f64::from(rules.bytes) * 8.0 / kbps + rules.overhead_ms) / 1000.0;
         Self {
             base: robots.iter().map(|robot| robot.home).sum::<Vector>() / robots.len() as f32,

@@ -211,7 +211,8 @@ pub(super) fn deceit(check: &mut Checker, file: &ScenarioFile) {
         }
         for other in file.deceit[..i].iter().filter(|other| may_clash(deceit, other)) {
             let at = file.deceit.iter().position(|entry| std::ptr::eq(entry, other)).unwrap_or_default();
-            let rule = format!("must not be about what deceit[{at}] is about, for the same robots at one time");
+            let rule =
+                format!("must not be about what deceit[{at}] is about, for the same robots at one time");
             check.fail(&field, rule, "both");
         }
     }
@@ -221,7 +222,11 @@ pub(super) fn deceit(check: &mut Checker, file: &ScenarioFile) {
 pub(super) fn told(check: &mut Checker, field: &str, lie: &Lie, on: &[Channel], file: &ScenarioFile) {
     values(check, &format!("{field}.lie"), lie, file);
     if lie.is_about_levels() && on.is_empty() {
-        check.fail(format!("{field}.on"), "must say what the lie is about (Energy, Hp, Need(name))", "nothing");
+        check.fail(
+            format!("{field}.on"),
+            "must say what the lie is about (Energy, Hp, Need(name))",
+            "nothing",
+        );
     } else if !lie.is_about_levels() && !on.is_empty() {
         check.fail(format!("{field}.on"), "must be empty: the lie is about no level", on.len());
     }
@@ -229,7 +234,12 @@ pub(super) fn told(check: &mut Checker, field: &str, lie: &Lie, on: &[Channel], 
         let Channel::Need(name) = channel else { continue };
         if !file.needs.iter().any(|need| need.name == *name) {
             let hint = meant(name, file.needs.iter().map(|need| need.name.as_str()));
-            check.fail_with(format!("{field}.on[{i}]"), "must name a need of the scenario", hint, shown(name));
+            check.fail_with(
+                format!("{field}.on[{i}]"),
+                "must name a need of the scenario",
+                hint,
+                shown(name),
+            );
         }
     }
     if let Some(i) = (1..on.len()).find(|i| on[..*i].contains(&on[*i])) {
@@ -302,12 +312,20 @@ fn values(check: &mut Checker, field: &str, lie: &Lie, file: &ScenarioFile) {
         }
         Lie::Whitewash { at_rest } => {
             if !at_rest {
-                check.fail(format!("{field}.at_rest"), "must be true: a new name is taken after a rest", "false");
+                check.fail(
+                    format!("{field}.at_rest"),
+                    "must be true: a new name is taken after a rest",
+                    "false",
+                );
             }
         }
         Lie::Impersonate { name } => {
             if *name >= robots {
-                check.fail(format!("{field}.as"), format!("must be the id of one of the {robots} robots"), name);
+                check.fail(
+                    format!("{field}.as"),
+                    format!("must be the id of one of the {robots} robots"),
+                    name,
+                );
             }
         }
         Lie::Stuck

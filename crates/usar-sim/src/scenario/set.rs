@@ -88,7 +88,7 @@ mod tests {
         for value in ["{\"dt_s\": \"Uniform(0.01, 0.02)\"}", "1"] {
             let error = set.set("draws", value).unwrap_err().to_string();
             assert!(error.starts_with("draws is no field; there are format, name"), "{error}");
-            assert!(error.ends_with("conflicts, words"), "{error}");
+            assert!(error.ends_with("medium, deceit, words"), "{error}");
         }
     }
 

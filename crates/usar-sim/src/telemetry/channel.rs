@@ -76,7 +76,11 @@ impl Channel {
             self.free_from_s = sent_s;
         }
         let heard_s = sent_s + medium.delay_s;
-        if is_lost { link.lost += 1 } else { link.delay_s += heard_s - time_s }
+        if is_lost {
+            link.lost += 1
+        } else {
+            link.delay_s += heard_s - time_s
+        }
         (!is_lost).then_some(heard_s)
     }
 }
@@ -171,7 +175,8 @@ mod tests {
     fn a_path_loses_by_distance_and_walls_as_computed_elsewhere() {
         let path = PathLoss { budget_db: 80.0, pl0_db: 40.0, n: 2.7, wall_db: 10.0, sigma_db: 4.0 };
         let wall = Outline::disc(Vector::new(5.0, 0.0), 0.5);
-        let cases = [(10.0, vec![wall], 0.773_372_6), (30.0, Vec::new(), 0.511_739_8), (0.2, Vec::new(), 1.0)];
+        let cases =
+            [(10.0, vec![wall], 0.773_372_6), (30.0, Vec::new(), 0.511_739_8), (0.2, Vec::new(), 1.0)];
         for (distance, walls, arrive) in cases {
             let medium = MediumModel { path: Some(path), walls: walls.into(), ..medium() };
             let lost = losses(&medium, Vector::new(distance, 0.0), 100_000);
@@ -196,11 +201,8 @@ mod tests {
         let near = MediumModel { range: 10.0, ..medium() };
         assert_eq!(losses(&near, Vector::new(10.0, 0.0), 2), [false, false]);
         assert_eq!(losses(&near, Vector::new(10.1, 0.0), 2), [true, true]);
-        let blackout = crate::model::BlackoutModel {
-            at: Vector::new(30.0, 0.0),
-            radius: 5.0,
-            window_s: [1.0, 2.0],
-        };
+        let blackout =
+            crate::model::BlackoutModel { at: Vector::new(30.0, 0.0), radius: 5.0, window_s: [1.0, 2.0] };
         let dark = MediumModel { blackouts: vec![blackout], ..medium() };
         assert_eq!(losses(&dark, Vector::new(27.0, 0.0), 3), [false, true, false]);
         assert_eq!(losses(&dark, Vector::new(24.0, 0.0), 3), [false; 3]);

@@ -100,7 +100,13 @@ pub fn said_of_mate(lie: &Lie, rating: Rating, top_mps: f64, rules: &TelemetryMo
     Some(match lie {
         Lie::BadMouth { of } if is_of(*of) => still,
         Lie::BallotStuff { of } if is_of(*of) => praised,
-        Lie::Collude => if is_of(Mates::Liars) { praised } else { still },
+        Lie::Collude => {
+            if is_of(Mates::Liars) {
+                praised
+            } else {
+                still
+            }
+        }
         Lie::Flip => {
             let furthest = FLIP_TOLERANCE * top_mps;
             let off = (rating.speed_mps - rating.said_mps).abs().min(furthest);

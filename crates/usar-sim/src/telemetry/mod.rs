@@ -321,12 +321,7 @@ impl Telemetry {
     }
 
     /// What a robot says of its levels and needs, when it read these levels.
-    fn said(
-        &mut self,
-        robot: &Robot,
-        read: [f64; 2],
-        now: &Now<'_>,
-    ) -> ([f64; 2], BTreeMap<usize, f64>) {
+    fn said(&mut self, robot: &Robot, read: [f64; 2], now: &Now<'_>) -> ([f64; 2], BTreeMap<usize, f64>) {
         let (mut levels, mut needs) = (read, BTreeMap::new());
         let Some(rules) = &now.model.telemetry else { return (levels, needs) };
         let mut told = std::mem::take(&mut self.told[robot.id.index()]);
@@ -338,8 +333,10 @@ impl Telemetry {
             let honest = robot.with_levels(read).needs(&now.model.needs);
             let honest = honest.map(|needs| needs.values().to_vec()).unwrap_or_default();
             let fresh = robot.fresh_needs(&now.model.needs);
-            let of_fresh = |need: NeedId| 100.0 * honest[need.index()] / fresh[need.index()].max(f64::MIN_POSITIVE);
-            let topics: Vec<f64> = read.into_iter().chain(lie.on_needs.iter().map(|need| of_fresh(*need))).collect();
+            let of_fresh =
+                |need: NeedId| 100.0 * honest[need.index()] / fresh[need.index()].max(f64::MIN_POSITIVE);
+            let topics: Vec<f64> =
+                read.into_iter().chain(lie.on_needs.iter().map(|need| of_fresh(*need))).collect();
             if told.at_onset.is_empty() {
                 told.at_onset.clone_from(&topics);
             }
@@ -366,13 +363,7 @@ impl Telemetry {
     }
 
     /// Sends a message. At home it is heard at once, unless the scenario says otherwise.
-    fn send(
-        &mut self,
-        says: Says,
-        robot: &Robot,
-        now: &Now<'_>,
-        log: &mut EventLog,
-    ) {
+    fn send(&mut self, says: Says, robot: &Robot, now: &Now<'_>, log: &mut EventLog) {
         let Some(rules) = &now.model.telemetry else { return };
         if self.is_mute[robot.id.index()] {
             return;
@@ -402,7 +393,8 @@ impl Telemetry {
             self.under_way = messages;
             return;
         }
-        let mut arrived: Vec<Message> = messages.iter().filter(|message| has_arrived(message)).cloned().collect();
+        let mut arrived: Vec<Message> =
+            messages.iter().filter(|message| has_arrived(message)).cloned().collect();
         messages.retain(|message| !has_arrived(message));
         self.under_way = messages;
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));

@@ -16,9 +16,30 @@ pub(super) fn text(command: &Command) -> String {
     for command in command.get_subcommands() {
         let name = command.get_name();
         let group = GROUPS.iter().find(|(_, first)| *first == name).map_or("", |(group, _)| group);
-        let _ = writeln!(text, "{group:<7} {name:<8} {}", describe(command));
+        let _ = writeln!(text, "{group:<7} {name:<8} {}", wrapped(&describe(command)));
     }
     text
+}
+
+/// Length of a line on the narrowest screen.
+const WIDTH: usize = 80;
+
+/// Where the descriptions begin in a line.
+const START: usize = 17;
+
+/// A description, on as many lines as it takes.
+fn wrapped(text: &str) -> String {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let last = lines.len() - 1;
+        if START + lines[last].len() + word.len() >= WIDTH {
+            lines.push(" ".repeat(START) + word);
+        } else {
+            let gap = if lines[last].is_empty() { "" } else { " " };
+            lines[last] += &format!("{gap}{word}");
+        }
+    }
+    lines.join("\n")
 }
 
 /// What a command does; of a noun, its verbs.

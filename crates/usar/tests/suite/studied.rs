@@ -112,7 +112,11 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     let results = folder.path().join("results/reproduction");
     has_the_files(&results);
     let report = read(&results.join("report.html"));
-    assert_eq!(report.matches("<tr class=\"claim\">").count(), 2 * 10, "the claims on both scenarios");
+    assert_eq!(
+        report.matches("<tr class=\"claim\">").count(),
+        3 * 10,
+        "the claims on both scenarios, and their ranges"
+    );
     assert!(report.contains("Not said: it takes 50 trials, there are 10."));
     refused(
         &usar(folder.path(), "compare results/reproduction"),

@@ -1,8 +1,8 @@
 //! Renews the numbers in `docs/`: runs the command before each block and replaces the block by its output.
 //! Figures and long tables are copied beside the page.
 //!
-//! `pages [PAGE ...]`, in the project's folder. It needs the results that the commands name, and `usar`
-//! built in the same profile.
+//! `pages [PAGE ...]`, in the project's folder, with `usar` built in the same profile. What is made of results
+//! that are not there stays as it is, and is named.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,15 @@ pub fn run(arguments: &[String]) -> ExitCode {
             continue;
         }
         let mut answers = BTreeMap::new();
+        let is_there = |command: &str| {
+            let mut folders = command.split(' ').filter(|word| word.starts_with("results/"));
+            folders.all(|folder| Path::new(folder).exists())
+        };
         let new = pages::renewed(&page, |command| {
+            if !is_there(command) {
+                eprintln!("{}: left as it is, without results: usar {command}", path.display());
+                return None;
+            }
             let answer = answers.entry(command.to_owned()).or_insert_with(|| {
                 eprintln!("{}: usar {command}", path.display());
                 pages::answer(&usar, Path::new("."), command)
@@ -34,7 +42,10 @@ pub fn run(arguments: &[String]) -> ExitCode {
         // `<!-- copy FROM TO -->` copies a figure or a table from the results to a place beside the page.
         for line in page.lines().filter_map(|line| line.strip_prefix("<!-- copy ")?.strip_suffix(" -->")) {
             let (from, to) = line.split_once(' ').expect("two names");
-            put(to, &std::fs::read(from).unwrap_or_else(|error| panic!("{from}: {error}")));
+            match std::fs::read(from) {
+                Ok(bytes) => put(to, &bytes),
+                Err(error) => eprintln!("{}: left as it is: {from}: {error}", path.display()),
+            }
         }
         for (name, text) in &new.files {
             put(name, text.as_bytes());

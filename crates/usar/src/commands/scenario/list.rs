@@ -76,8 +76,9 @@ impl Arguments {
 
 /// The scenarios that the program carries.
 fn carried() -> Result<Vec<Listed>, Failure> {
-    let one = |(name, text): (&str, &str)| {
-        let scenario = Scenario::parse(text, Path::new(name)).map_err(Failure::input)?;
+    let one = |(name, _): (&str, &str)| {
+        let Ok(path) = library::path(name);
+        let (scenario, _) = load(&path)?;
         Ok(Listed { name: name.to_owned(), about: scenario.description.clone() })
     };
     library::scenarios().map(one).collect()

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use experiments::comparison::{digits, short};
-use experiments::experiment::{Experiment, Overrides, split_list};
+use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::folder::{Folder, Opening};
 use reports::table::{headed, right};
 use serde_json::json;
 use statistics::{Moments, cautious};
 
-use crate::arguments::{ProgressArguments, ShownArguments, count};
+use crate::arguments::{PoliciesArgument, ProgressArguments, ShownArguments, count, one_seed};
 use crate::library;
 use crate::prelude::*;
 
@@ -17,10 +17,8 @@ use crate::prelude::*;
 const DRAW: &str = "RANDOM";
 
 /// The oracle looks at this metric: the rate does not reward rounds that take long.
-const ORACLES: [&str; 2] = [
-    "best=ORACLE(metric: \"rescue_rate\")",
-    "worst=ORACLE(metric: \"rescue_rate\", pick: Worst)",
-];
+const ORACLES: [&str; 2] =
+    ["best=ORACLE(metric: \"rescue_rate\")", "worst=ORACLE(metric: \"rescue_rate\", pick: Worst)"];
 
 /// Rules that the paper compares; they are tried where no others are named.
 const RULES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
@@ -44,12 +42,11 @@ pub(crate) struct Arguments {
     /// Trials of each policy, in each case or candidate
     #[arg(long, default_value_t = 32, value_parser = count(8..=1_000_000))]
     trials: u32,
-    /// Policies, separated by commas [default: RNE,DIS,ENG,HP_DIS]
-    #[arg(long)]
-    policies: Option<String>,
-    /// Seed of the first trial
-    #[arg(long, default_value_t = 1)]
-    first_seed: u64,
+    #[command(flatten)]
+    policies: PoliciesArgument,
+    /// Seed of the first trial [default: the file's]
+    #[arg(long, value_parser = one_seed)]
+    first_seed: Option<u64>,
     /// File or folder to write [default: results/NAME]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -92,7 +89,8 @@ impl Arguments {
         let mut table = headed(["policy", "mean", "minus a draw", "95 % interval", "in %"]);
         for row in &rows {
             let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
-            let interval = row.interval.map_or("-".to_owned(), |[a, b]| format!("{} to {}", short(a), short(b)));
+            let interval =
+                row.interval.map_or("-".to_owned(), |[a, b]| format!("{} to {}", short(a), short(b)));
             let percent = row.percent.map_or("-".to_owned(), |percent| format!("{percent:+.1}"));
             let mean = right(&row.mean.map_or("-".to_owned(), |mean| digits(mean, 4)));
             table.add_row([
@@ -107,11 +105,10 @@ impl Arguments {
     }
 
     fn experiment(&self, registry: &Registry) -> Result<Experiment, Failure> {
-        let own = self.policies.as_ref().map(|list| split_list(list).into_iter().map(str::to_owned).collect());
-        let rules: Vec<String> = own.unwrap_or_else(|| RULES.map(str::to_owned).to_vec());
+        let rules = self.policies.list().unwrap_or_else(|| RULES.map(str::to_owned).to_vec());
         let others = [DRAW].into_iter().chain(ORACLES).map(str::to_owned);
         let policies = Some(rules.into_iter().filter(|rule| rule != DRAW).chain(others).collect());
-        let (trials, first_seed) = (Some(self.trials), Some(self.first_seed));
+        let (trials, first_seed) = (Some(self.trials), self.first_seed);
         let overrides = Overrides { policies, trials, first_seed, ..Overrides::default() };
         Experiment::load(&self.file, &overrides, registry)
     }
@@ -126,7 +123,8 @@ fn rows(folder: &Folder) -> Result<Vec<Row>, Failure> {
     let draw = draw.ok_or_else(|| Failure::run("the fair draw was not run"))?;
     let of_draw = Moments::of(&values(draw).collect::<Vec<_>>()).mean;
     let row = |(place, label): (usize, &str)| {
-        let pairs = (1..=experiment.trials).filter_map(|trial| Some(value(place, trial)? - value(draw, trial)?));
+        let pairs =
+            (1..=experiment.trials).filter_map(|trial| Some(value(place, trial)? - value(draw, trial)?));
         let differences: Vec<f64> = pairs.collect();
         let difference = Moments::of(&differences).mean.filter(|_| place != draw);
         Row {
