@@ -24,6 +24,7 @@ fn main() -> ExitCode {
         "million" => million::run(arguments),
         "mutations" => mutations::run(arguments),
         "limits" => limits::run(),
+        "movement" => xtask::movement::main(),
         "navigation" => xtask::navigation::main(),
         "pages" => pages::run(arguments),
         "quiet" => quiet::run(arguments),

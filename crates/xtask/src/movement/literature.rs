@@ -1,0 +1,89 @@
+//! Figures from the literature, each with its source, and Weidmann's relation between density and speed.
+
+use serde::Deserialize;
+
+/// Weidmann's free speed, in metres per second: the preferred speed of the discs, too.
+pub const FREE_SPEED_MPS: f64 = 1.34;
+
+/// The constants of Weidmann's relation: a shape in people a square metre, and the density at which all stand.
+const SHAPE_PER_M2: f64 = 1.913;
+const JAM_PER_M2: f64 = 5.4;
+
+/// What a figure measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// People a second and metre of width, over the width in metres.
+    SpecificFlow,
+    /// Mean speed in metres per second, over people a square metre.
+    Speed,
+}
+
+/// A figure.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Published {
+    /// What it measures.
+    pub quantity: Quantity,
+    /// The width, or the density.
+    pub x: f64,
+    /// The value.
+    pub y: f64,
+    /// The experiment.
+    pub series: String,
+    /// Where it was read.
+    pub source: String,
+}
+
+/// A measured power of a robot.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Power {
+    /// The robot.
+    pub robot: String,
+    /// What it did.
+    pub state: String,
+    /// The power, in watts.
+    pub watts: f64,
+    /// Its battery, in watt-hours.
+    pub battery_wh: f64,
+    /// Where it was read.
+    pub source: String,
+}
+
+impl Power {
+    /// The power as `costs.energy.per_second`: percent of the battery a second.
+    #[must_use]
+    pub fn per_second(&self) -> f64 {
+        100.0 * self.watts / (3600.0 * self.battery_wh)
+    }
+}
+
+/// The figures of `literature.csv`.
+///
+/// # Errors
+/// A line is no figure.
+pub fn published() -> Result<Vec<Published>, csv::Error> {
+    rows(include_bytes!("literature.csv"))
+}
+
+/// The measured powers of `energy.csv`.
+///
+/// # Errors
+/// A line is no measured power.
+pub fn powers() -> Result<Vec<Power>, csv::Error> {
+    rows(include_bytes!("energy.csv"))
+}
+
+fn rows<T: for<'de> Deserialize<'de>>(text: &[u8]) -> Result<Vec<T>, csv::Error> {
+    csv::Reader::from_reader(text).deserialize().collect()
+}
+
+/// Weidmann's relation (1993): the mean speed of people, in metres per second, at a density in people a square
+/// metre.
+#[must_use]
+pub fn weidmann(per_m2: f64) -> f64 {
+    if per_m2 <= 0.0 {
+        return FREE_SPEED_MPS;
+    }
+    let speed = FREE_SPEED_MPS * (1.0 - libm::exp(-SHAPE_PER_M2 * (1.0 / per_m2 - 1.0 / JAM_PER_M2)));
+    speed.max(0.0)
+}
