@@ -4,7 +4,7 @@
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use usar_sim::event::Event;
 use usar_sim::scenario::{
-    DebrisFile, DebrisShape, Errand, LayoutError, Point, RoleFile, Row, Scenario, ScenarioFile,
+    DebrisFile, DebrisShape, Errand, LayoutError, Normal, Point, RoleFile, Row, Scenario, ScenarioFile,
 };
 use usar_sim::simulation::{Advance, Simulation};
 
@@ -80,8 +80,8 @@ pub struct Passage {
     pub flow_per_s: Option<f64>,
     /// Number of discs that came through.
     pub through: usize,
-    /// Number of discs that gave up.
-    pub given_up: usize,
+    /// Whether a disc gave up, because it came no nearer; the measurement ended then.
+    pub jammed: bool,
     /// Samples in the middle of the longest stretch, in the steady state.
     pub samples: Vec<Sample>,
 }
@@ -138,9 +138,7 @@ impl Crowd {
         }
         file.debris = self.walls(begin);
         file.roles = vec![RoleFile { radius_m: RADIUS_M, ..role(FREE_SPEED_MPS) }];
-        for rates in [&mut file.costs.energy, &mut file.costs.hp] {
-            (rates.per_step, rates.per_metre, rates.per_second) = (0.0, 0.0, 0.0);
-        }
+        keep_fresh(&mut file);
         file
     }
 
@@ -164,7 +162,7 @@ impl Crowd {
         walls
     }
 
-    /// Runs the crowd of a seed until all are through, or for as long as this.
+    /// Runs the crowd of a seed until all are through, until one gives up, or for as long as this.
     ///
     /// # Errors
     /// The world has no room for the crowd.
@@ -178,10 +176,9 @@ impl Crowd {
         let [begin, end] = self.ends();
         let line = f64::midpoint(begin, end);
         let mut crossed: Vec<Option<f64>> = vec![None; self.discs as usize];
-        let (mut given_up, mut samples, mut next_s) = (0, Vec::new(), 0.0);
+        let (mut jammed, mut samples, mut next_s) = (false, Vec::new(), 0.0);
         while matches!(simulation.advance(), Advance::Running) {
-            let gave_up = |event: &&Event| matches!(event, Event::Unreachable { .. });
-            given_up += simulation.events().iter().filter(gave_up).count();
+            jammed = simulation.events().iter().any(|event| matches!(event, Event::Unreachable { .. }));
             let (robots, time_s) = (&simulation.world().robots, simulation.time_s());
             for (robot, crossed) in robots.iter().zip(&mut crossed) {
                 if f64::from(robot.position.x) > line {
@@ -197,7 +194,7 @@ impl Crowd {
                     samples.push(self.sample(&speeds));
                 }
             }
-            if crossed.iter().all(Option::is_some) {
+            if jammed || crossed.iter().all(Option::is_some) {
                 break;
             }
         }
@@ -205,7 +202,7 @@ impl Crowd {
         times.sort_by(f64::total_cmp);
         let unsteady = (UNSTEADY * samples.len() as f64).round() as usize;
         let samples = samples[unsteady..samples.len() - unsteady].to_vec();
-        Ok(Passage { flow_per_s: steady_flow(&times), through: times.len(), given_up, samples })
+        Ok(Passage { flow_per_s: steady_flow(&times), through: times.len(), jammed, samples })
     }
 
     fn sample(&self, speeds: &[f64]) -> Sample {
@@ -224,6 +221,14 @@ pub fn steady_flow(times: &[f64]) -> Option<f64> {
     let (from, to) = (unsteady, last.checked_sub(unsteady)?);
     let seconds = times.get(to)? - times.get(from)?;
     (to > from && seconds > 0.0).then(|| (to - from) as f64 / seconds)
+}
+
+/// Everybody is in full health, and stays so: health decides how fast a robot is. Nothing costs energy.
+pub(super) fn keep_fresh(file: &mut ScenarioFile) {
+    file.initial_levels.hp = Normal { mean: 100.0, sd: 0.0 };
+    for rates in [&mut file.costs.energy, &mut file.costs.hp] {
+        (rates.per_step, rates.per_metre, rates.per_second) = (0.0, 0.0, 0.0);
+    }
 }
 
 /// A role of this preferred speed, in metres per second, that knows all walls.

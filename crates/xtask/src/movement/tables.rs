@@ -1,0 +1,235 @@
+//! The tables and figures of what was measured, beside the literature.
+
+use reports::{Labels, Series, chart};
+use statistics::bootstrap::quantile;
+
+use super::literature::{Power, Published, Quantity, weidmann};
+use super::{AtDoor, DEPTHS_M, DISCS, InSquare, Measured};
+
+/// Width of the classes of density, in discs a square metre, and the fewest samples of one.
+const CLASS_PER_M2: f64 = 0.5;
+const FEWEST: usize = 20;
+
+/// A table in Markdown.
+pub(super) struct Table {
+    pub title: &'static str,
+    pub rows: String,
+}
+
+/// A figure and the name of its file.
+pub(super) struct Figure {
+    pub name: &'static str,
+    pub svg: String,
+}
+
+/// Discs in corridors at densities of a class.
+struct Class {
+    samples: usize,
+    per_m2: f64,
+    speed_mps: f64,
+    /// The mean of the published speeds in the class.
+    published_mps: Option<f64>,
+}
+
+/// All tables.
+pub(super) fn all(measured: &Measured, published: &[Published], powers: &[Power]) -> Vec<Table> {
+    vec![
+        Table { title: "flow", rows: flow(&measured.doors, published) },
+        Table { title: "speed", rows: speed(measured, published) },
+        Table { title: "corridors", rows: corridors(measured) },
+        Table { title: "square", rows: square(&measured.squares) },
+        Table { title: "energy", rows: energy(powers) },
+    ]
+}
+
+/// Both figures.
+pub(super) fn figures(measured: &Measured, published: &[Published]) -> Vec<Figure> {
+    let flow = Labels { title: "Flow through a door", x: "width, m", y: "people or discs a second" };
+    let speed = Labels { title: "Speed in a corridor", x: "people or discs a square metre", y: "m/s" };
+    vec![
+        Figure { name: "flow.svg", svg: chart(flow, &flow_series(&measured.doors, published)) },
+        Figure { name: "density.svg", svg: chart(speed, &speed_series(measured, published)) },
+    ]
+}
+
+fn table(header: &str, rows: impl Iterator<Item = String>) -> String {
+    let columns = header.matches('|').count() - 1;
+    let mut text = format!("{header}\n|{}\n", " --- |".repeat(columns));
+    rows.for_each(|row| text += &format!("{row}\n"));
+    text
+}
+
+fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let values: Vec<f64> = values.into_iter().collect();
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+fn or_dash(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.2}"))
+}
+
+/// The flows of the seeds in which nobody gave up.
+fn flows(door: &AtDoor) -> impl Iterator<Item = f64> + '_ {
+    door.passages.iter().filter(|passage| !passage.jammed).filter_map(|passage| passage.flow_per_s)
+}
+
+fn flow(doors: &[AtDoor], published: &[Published]) -> String {
+    let (shallow, deep) = doors.split_at(doors.len() / DEPTHS_M.len());
+    let ours = |door: &AtDoor| {
+        let (low, high) = flows(door).fold((f64::INFINITY, 0.0_f64), |(a, b), flow| (a.min(flow), b.max(flow)));
+        let jammed = door.passages.iter().filter(|passage| passage.jammed).count();
+        let all = door.passages.len();
+        let flow = mean(flows(door)).map_or("-".to_owned(), |mean| format!("{mean:.2} ({low:.2} to {high:.2})"));
+        format!("{flow} | {jammed} of {all}")
+    };
+    let of_people = |width: f64| {
+        let there = published.iter().filter(|one| is_flow_at(one, width));
+        let told = there.map(|one| format!("{:.2} ({})", one.y * one.x, one.series));
+        let told: Vec<String> = told.collect();
+        if told.is_empty() { "-".to_owned() } else { told.join(", ") }
+    };
+    let row = |(a, b): (&AtDoor, &AtDoor)| {
+        format!("| {} | {} | {} | {} |", a.width_m, of_people(a.width_m), ours(a), ours(b))
+    };
+    let header = format!(
+        "| width, m | people a second | discs a second, {} m deep | jams | {} m deep | jams |",
+        DEPTHS_M[0], DEPTHS_M[1]
+    );
+    table(&header, shallow.iter().zip(deep).map(row))
+}
+
+fn is_flow_at(one: &Published, width_m: f64) -> bool {
+    one.quantity == Quantity::SpecificFlow && (one.x - width_m).abs() < 1e-9
+}
+
+fn flow_series(doors: &[AtDoor], published: &[Published]) -> Vec<Series> {
+    let mut series: Vec<Series> = Vec::new();
+    for one in published.iter().filter(|one| one.quantity == Quantity::SpecificFlow) {
+        add(&mut series, &one.series, [one.x, one.y * one.x]);
+    }
+    for door in doors {
+        let name = format!("discs, {} m deep", door.depth_m);
+        flows(door).for_each(|flow| add(&mut series, &name, [door.width_m, flow]));
+    }
+    series
+}
+
+/// Adds a point to the series of this name.
+fn add(series: &mut Vec<Series>, name: &str, point: [f64; 2]) {
+    match series.iter_mut().find(|one| one.name == name) {
+        Some(one) => one.points.push(point),
+        None => series.push(Series { name: name.to_owned(), points: vec![point], is_line: false }),
+    }
+}
+
+fn classes(measured: &Measured, published: &[Published]) -> Vec<Class> {
+    let passages = measured.corridors.iter().flat_map(|corridor| &corridor.passages);
+    let samples: Vec<_> = passages.flat_map(|passage| &passage.samples).collect();
+    let class_of = |per_m2: f64| (per_m2 / CLASS_PER_M2) as usize;
+    let last = samples.iter().map(|sample| class_of(sample.per_m2)).max().unwrap_or(0);
+    let class = |class: usize| {
+        let here = || samples.iter().filter(move |sample| class_of(sample.per_m2) == class);
+        let people = published.iter().filter(|one| one.quantity == Quantity::Speed && class_of(one.x) == class);
+        Some(Class {
+            samples: here().count(),
+            per_m2: mean(here().map(|sample| sample.per_m2))?,
+            speed_mps: mean(here().map(|sample| sample.speed_mps))?,
+            published_mps: mean(people.map(|one| one.y)),
+        })
+    };
+    (0..=last).filter_map(class).filter(|class| class.samples >= FEWEST).collect()
+}
+
+fn speed(measured: &Measured, published: &[Published]) -> String {
+    let row = |class: Class| {
+        format!(
+            "| {:.2} | {} | {:.2} | {:.2} | {} |",
+            class.per_m2,
+            class.samples,
+            class.speed_mps,
+            weidmann(class.per_m2),
+            or_dash(class.published_mps)
+        )
+    };
+    table(
+        "| discs a m² | samples | discs, m/s | Weidmann, m/s | people in corridors, m/s |",
+        classes(measured, published).into_iter().map(row),
+    )
+}
+
+fn speed_series(measured: &Measured, published: &[Published]) -> Vec<Series> {
+    let mut series: Vec<Series> = Vec::new();
+    for one in published.iter().filter(|one| one.quantity == Quantity::Speed) {
+        add(&mut series, &one.series, [one.x, one.y]);
+    }
+    for class in classes(measured, published) {
+        add(&mut series, "discs", [class.per_m2, class.speed_mps]);
+    }
+    let points = (2..=54).map(|tenth| [f64::from(tenth) / 10.0, weidmann(f64::from(tenth) / 10.0)]).collect();
+    series.push(Series { name: "Weidmann 1993".to_owned(), points, is_line: true });
+    series
+}
+
+fn corridors(measured: &Measured) -> String {
+    let row = |corridor: &super::InCorridor| {
+        let samples = || corridor.passages.iter().flat_map(|passage| &passage.samples);
+        let through: usize = corridor.passages.iter().map(|passage| passage.through).sum();
+        let jammed = corridor.passages.iter().filter(|passage| passage.jammed).count();
+        format!(
+            "| {} | {} | {} | {} | {through} of {} | {jammed} of {} |",
+            corridor.ends_m[0],
+            corridor.ends_m[1],
+            or_dash(mean(samples().map(|sample| sample.per_m2))),
+            or_dash(mean(samples().map(|sample| sample.speed_mps))),
+            DISCS as usize * corridor.passages.len(),
+            corridor.passages.len(),
+        )
+    };
+    table(
+        "| entrance, m | exit, m | discs a m² | m/s | half way | jams |",
+        measured.corridors.iter().map(row),
+    )
+}
+
+fn square(squares: &[InSquare]) -> String {
+    let row = |square: &InSquare| {
+        let all = square.outcomes.len() as f64;
+        let percent = |count: usize| 100.0 * count as f64 / all;
+        let collided = square.outcomes.iter().filter(|outcome| outcome.collided).count();
+        let stuck = square.outcomes.iter().filter(|outcome| outcome.stuck).count();
+        let good = || square.outcomes.iter().filter(|outcome| !outcome.collided && !outcome.stuck);
+        let mut extra: Vec<f64> = good().map(|outcome| outcome.extra_s).collect();
+        extra.sort_by(f64::total_cmp);
+        let at = |share| if extra.is_empty() { f64::NAN } else { quantile(&extra, share) };
+        format!(
+            "| {} | {:.0} % | {:.0} % | {:.0} % | {} | {:.2} | {:.2} | {} |",
+            square.agents,
+            percent(good().count()),
+            percent(collided),
+            percent(stuck),
+            or_dash(mean(extra.iter().copied())),
+            at(0.75),
+            at(0.9),
+            or_dash(mean(good().map(|outcome| outcome.extra_alone_s))),
+        )
+    };
+    table(
+        "| agents | success | bodies touch | stuck | extra time, s | 75th percentile | 90th | alone |",
+        squares.iter().map(row),
+    )
+}
+
+fn energy(powers: &[Power]) -> String {
+    let row = |power: &Power| {
+        format!(
+            "| {} | {} | {} | {} | {:.5} | {:.1} |",
+            power.robot,
+            power.state,
+            power.watts,
+            power.battery_wh,
+            power.per_second(),
+            power.battery_wh / power.watts
+        )
+    };
+    table("| robot | | W | battery, Wh | `per_second`, % | lasts, h |", powers.iter().map(row))
+}
