@@ -24,6 +24,10 @@ worlds:
 navigation *arguments:
     cargo run --release --package xtask -- navigation {{arguments}}
 
+# Crowds at doors and in corridors beside measured people, and the problems of CADRL; `--out docs` renews docs/movement.md
+movement *arguments:
+    cargo run --release --package xtask -- movement {{arguments}}
+
 # 510 random worlds with the engine at rest in quiet steps and with the engine always on: every hash is the same
 quiet *arguments:
     cargo run --release --package xtask -- quiet {{arguments}}

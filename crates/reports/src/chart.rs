@@ -82,7 +82,10 @@ mod tests {
         };
         let labels = Labels { title: "t", x: "width", y: "flow" };
         let svg = chart(labels, &[series("measured", false), series("fitted", true)]);
-        assert!(["measured", "fitted", "width", "flow", ">0<"].iter().all(|word| svg.contains(word)), "{svg}");
+        assert!(
+            ["measured", "fitted", "width", "flow", ">0<"].iter().all(|word| svg.contains(word)),
+            "{svg}"
+        );
         assert_eq!(chart(labels, &[]), "");
     }
 }

@@ -1,8 +1,9 @@
-//! A crowd of discs in a room, and its way out: a door, or a corridor between two doors, into a hall. What is
+//! A crowd of robots in a room, and its way out: a door, or a corridor between two doors, into a hall. What is
 //! measured is measured where and how the experiments with people did.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use usar_sim::event::Event;
+use usar_sim::robot::{Robot, STANDING_MPS};
 use usar_sim::scenario::{
     DebrisFile, DebrisShape, Errand, LayoutError, Normal, Point, RoleFile, Row, Scenario, ScenarioFile,
 };
@@ -11,13 +12,13 @@ use usar_sim::simulation::{Advance, Simulation};
 use super::literature::FREE_SPEED_MPS;
 use crate::worlds::base;
 
-/// Radius of a disc, in metres: the default of JuPedSim's pedestrians.
+/// Radius of a robot, in metres: the default of `JuPedSim`'s pedestrians.
 pub const RADIUS_M: f64 = 0.2;
 
-/// A disc reaches its preferred speed in half a second, the relaxation time of Helbing and Molnár (1995).
+/// A robot reaches its preferred speed in half a second, the relaxation time of Helbing and Molnár (1995).
 pub const RELAXATION_S: f64 = 0.5;
 
-/// Density of the waiting crowd, in discs a square metre, as in Seyfried et al. (2009).
+/// Density of the waiting crowd, in robots a square metre, as in Seyfried et al. (2009).
 const CROWD_PER_M2: f64 = 3.3;
 
 /// Height of the room and of the hall, and distance of the crowd from the door, in metres.
@@ -27,7 +28,7 @@ const TO_DOOR_M: f64 = 2.0;
 /// The seed moves each start by up to this much along both axes, in metres.
 const JITTER_M: f64 = 0.04;
 
-/// Distance between the places in the hall where discs end, and of these from the door, in metres.
+/// Distance between the places in the hall where robots end, and of these from the door, in metres.
 const PLACES_M: f64 = 1.1;
 const TO_PLACES_M: f64 = 4.0;
 
@@ -43,7 +44,7 @@ const SAMPLE_S: f64 = 0.5;
 /// Share at either end that is no part of the steady state: of those who cross, or of the time.
 const UNSTEADY: f64 = 0.1;
 
-/// Larger than every world, so that all discs know all walls.
+/// Larger than every world, so that all robots know all walls.
 const SENSING_M: f64 = 200.0;
 
 /// A stretch of a way out: its length and width, in metres.
@@ -58,8 +59,8 @@ pub struct Stretch {
 /// A crowd and its way out.
 #[derive(Debug, Clone)]
 pub struct Crowd {
-    /// Number of discs.
-    pub discs: u32,
+    /// Number of robots.
+    pub robots: u32,
     /// The stretches of the way out, from the room to the hall.
     pub way: Vec<Stretch>,
 }
@@ -67,20 +68,22 @@ pub struct Crowd {
 /// Density and mean speed along a corridor at one time.
 #[derive(Debug, Clone, Copy)]
 pub struct Sample {
-    /// Discs a square metre.
+    /// Robots a square metre.
     pub per_m2: f64,
     /// Mean speed towards the exit, in metres per second.
     pub speed_mps: f64,
+    /// Share of the robots that stand.
+    pub standing: f64,
 }
 
 /// What was measured of a crowd.
 #[derive(Debug, Clone)]
 pub struct Passage {
-    /// Discs a second through the way out in the steady state; `None` if too few came through.
+    /// Robots a second through the way out in the steady state; `None` if too few came through.
     pub flow_per_s: Option<f64>,
-    /// Number of discs that came through.
+    /// Number of robots that came through.
     pub through: usize,
-    /// Whether a disc gave up, because it came no nearer; the measurement ended then.
+    /// Whether a robot gave up, because it came no nearer; the measurement ended then.
     pub jammed: bool,
     /// Samples in the middle of the longest stretch, in the steady state.
     pub samples: Vec<Sample>,
@@ -89,22 +92,22 @@ pub struct Passage {
 impl Crowd {
     /// A crowd before a door of this width and depth.
     #[must_use]
-    pub fn at_door(discs: u32, width_m: f64, length_m: f64) -> Self {
-        Self { discs, way: vec![Stretch { length_m, width_m }] }
+    pub fn at_door(robots: u32, width_m: f64, length_m: f64) -> Self {
+        Self { robots, way: vec![Stretch { length_m, width_m }] }
     }
 
     /// A crowd before a corridor of 8 m by 1.8 m, as in the Hermes experiments, with a door at either end.
     #[must_use]
-    pub fn at_corridor(discs: u32, entrance_m: f64, exit_m: f64) -> Self {
+    pub fn at_corridor(robots: u32, entrance_m: f64, exit_m: f64) -> Self {
         let door = |width_m| Stretch { length_m: DOOR_M, width_m };
         let corridor = Stretch { length_m: 8.0, width_m: 1.8 };
-        Self { discs, way: vec![door(entrance_m), corridor, door(exit_m)] }
+        Self { robots, way: vec![door(entrance_m), corridor, door(exit_m)] }
     }
 
-    /// Discs side by side in the waiting crowd, and the number of ranks.
+    /// Robots side by side in the waiting crowd, and the number of ranks.
     fn ranks(&self) -> [u32; 2] {
         let abreast = (HEIGHT_M * libm::sqrt(CROWD_PER_M2)) as u32;
-        [abreast, self.discs.div_ceil(abreast)]
+        [abreast, self.robots.div_ceil(abreast)]
     }
 
     /// Where the way out begins and ends along x.
@@ -121,20 +124,21 @@ impl Crowd {
         let ([abreast, _], [begin, end]) = (self.ranks(), self.ends());
         let spacing = 1.0 / libm::sqrt(CROWD_PER_M2);
         let in_hall = (HEIGHT_M / PLACES_M) as u32;
-        let columns = self.discs.div_ceil(in_hall);
+        let columns = self.robots.div_ceil(in_hall);
         let length = end + TO_PLACES_M + PLACES_M * f64::from(columns);
         let mut file = base(seed, [length.ceil(), HEIGHT_M], duration_s);
-        let beside = |k: u32, of: u32, gap: f64| HEIGHT_M / 2.0 + gap * (f64::from(k) - f64::from(of - 1) / 2.0);
+        let beside =
+            |k: u32, of: u32, gap: f64| HEIGHT_M / 2.0 + gap * (f64::from(k) - f64::from(of - 1) / 2.0);
         let mut jittered = |x: f64| x + draws.random_range(-JITTER_M..JITTER_M);
-        for disc in 0..self.discs {
-            let rank = f64::from(disc / abreast);
+        for robot in 0..self.robots {
+            let rank = f64::from(robot / abreast);
             let x = jittered(begin - TO_DOOR_M - spacing * rank);
-            let center = [x, jittered(beside(disc % abreast, abreast, spacing))];
+            let center = [x, jittered(beside(robot % abreast, abreast, spacing))];
             // Those in front go farthest, so that nobody has to pass those who have arrived.
-            let column = f64::from(columns - 1 - disc / in_hall);
+            let column = f64::from(columns - 1 - robot / in_hall);
             let x = end + TO_PLACES_M + PLACES_M * column;
             file.team.push(row(center));
-            file.errands.push(Errand { robot: disc, to: vec![[x, beside(disc % in_hall, in_hall, PLACES_M)]] });
+            file.errands.push(Errand { robot, to: vec![[x, beside(robot % in_hall, in_hall, PLACES_M)]] });
         }
         file.debris = self.walls(begin);
         file.roles = vec![RoleFile { radius_m: RADIUS_M, ..role(FREE_SPEED_MPS) }];
@@ -175,7 +179,7 @@ impl Crowd {
         let mut simulation = Simulation::new(&scenario, seed)?;
         let [begin, end] = self.ends();
         let line = f64::midpoint(begin, end);
-        let mut crossed: Vec<Option<f64>> = vec![None; self.discs as usize];
+        let mut crossed: Vec<Option<f64>> = vec![None; self.robots as usize];
         let (mut jammed, mut samples, mut next_s) = (false, Vec::new(), 0.0);
         while matches!(simulation.advance(), Advance::Running) {
             jammed = simulation.events().iter().any(|event| matches!(event, Event::Unreachable { .. }));
@@ -189,10 +193,7 @@ impl Crowd {
                 next_s += SAMPLE_S;
                 let is_inside = |x: f64| (x - line).abs() <= AREA_M / 2.0;
                 let inside = robots.iter().filter(|robot| is_inside(f64::from(robot.position.x)));
-                let speeds: Vec<f64> = inside.map(|robot| f64::from(robot.velocity.x)).collect();
-                if !speeds.is_empty() {
-                    samples.push(self.sample(&speeds));
-                }
+                samples.extend(self.sample(&inside.collect::<Vec<&Robot>>()));
             }
             if jammed || crossed.iter().all(Option::is_some) {
                 break;
@@ -205,11 +206,17 @@ impl Crowd {
         Ok(Passage { flow_per_s: steady_flow(&times), through: times.len(), jammed, samples })
     }
 
-    fn sample(&self, speeds: &[f64]) -> Sample {
-        let width = self.way.iter().max_by(|a, b| a.length_m.total_cmp(&b.length_m));
-        let area = AREA_M * width.map_or(1.0, |stretch| stretch.width_m);
-        let count = speeds.len() as f64;
-        Sample { per_m2: count / area, speed_mps: speeds.iter().sum::<f64>() / count }
+    /// Density, speed and standing share of the robots in the area; `None` without one.
+    fn sample(&self, inside: &[&Robot]) -> Option<Sample> {
+        let longest = self.way.iter().max_by(|a, b| a.length_m.total_cmp(&b.length_m))?;
+        let count = inside.len() as f64;
+        let speed = inside.iter().map(|robot| f64::from(robot.velocity.x)).sum::<f64>();
+        let standing = inside.iter().filter(|robot| robot.velocity.length() <= STANDING_MPS).count() as f64;
+        (count > 0.0).then(|| Sample {
+            per_m2: count / (AREA_M * longest.width_m),
+            speed_mps: speed / count,
+            standing: standing / count,
+        })
     }
 }
 
@@ -234,7 +241,7 @@ pub(super) fn keep_fresh(file: &mut ScenarioFile) {
 /// A role of this preferred speed, in metres per second, that knows all walls.
 pub(super) fn role(speed_mps: f64) -> RoleFile {
     RoleFile {
-        name: "disc".to_owned(),
+        name: "robot".to_owned(),
         speed_mps,
         acceleration_mps2: speed_mps / RELAXATION_S,
         sensing_m: SENSING_M,
@@ -242,7 +249,7 @@ pub(super) fn role(speed_mps: f64) -> RoleFile {
     }
 }
 
-/// One disc at a place.
+/// One robot at a place.
 pub(super) fn row(center: Point) -> Row {
-    Row { role: "disc".to_owned(), count: 1, center, width_m: 0.0, levels: None, body: None }
+    Row { role: "robot".to_owned(), count: 1, center, width_m: 0.0, levels: None, body: None }
 }

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// Weidmann's free speed, in metres per second: the preferred speed of the discs, too.
+/// Weidmann's free speed, in metres per second: the preferred speed of the robots, too.
 pub const FREE_SPEED_MPS: f64 = 1.34;
 
 /// The constants of Weidmann's relation: a shape in people a square metre, and the density at which all stand.
@@ -41,6 +41,8 @@ pub struct Power {
     pub robot: String,
     /// What it did.
     pub state: String,
+    /// Its speed, in metres per second.
+    pub speed_mps: f64,
     /// The power, in watts.
     pub watts: f64,
     /// Its battery, in watt-hours.
@@ -53,7 +55,19 @@ impl Power {
     /// The power as `costs.energy.per_second`: percent of the battery a second.
     #[must_use]
     pub fn per_second(&self) -> f64 {
-        100.0 * self.watts / (3600.0 * self.battery_wh)
+        self.percent(self.watts)
+    }
+
+    /// What driving adds to this power at a stand as `costs.energy.per_metre`: percent of the battery a metre;
+    /// `None` for a robot that stands.
+    #[must_use]
+    pub fn per_metre(&self, standing: &Self) -> Option<f64> {
+        (self.speed_mps > 0.0).then(|| self.percent((self.watts - standing.watts) / self.speed_mps))
+    }
+
+    /// Joules in percent of the battery.
+    fn percent(&self, joules: f64) -> f64 {
+        100.0 * joules / (3600.0 * self.battery_wh)
     }
 }
 

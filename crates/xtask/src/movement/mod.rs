@@ -1,4 +1,4 @@
-//! How the discs of the default right of way move, beside people in experiments and beside the problems of
+//! How the robots of the default right of way move, beside people in experiments and beside the problems of
 //! CADRL (docs/movement.md).
 
 pub mod crowd;
@@ -31,11 +31,11 @@ const CORRIDORS_M: [[f64; 2]; 7] =
 /// Numbers of agents in the square.
 const AGENTS: [u32; 5] = [2, 4, 6, 8, 10];
 
-/// Discs in a crowd, and the longest time for them to get through, in seconds.
-const DISCS: u32 = 120;
+/// Robots in a crowd, and the longest time for them to get through, in seconds.
+const ROBOTS: u32 = 120;
 const LIMIT_S: f64 = 600.0;
 
-/// How discs move, beside people in experiments and beside the problems of CADRL.
+/// How robots move, beside people in experiments and beside the problems of CADRL.
 #[derive(Parser)]
 #[command(name = "movement")]
 struct Options {
@@ -94,7 +94,7 @@ pub fn main() -> ExitCode {
 impl Options {
     fn run(&self) -> Result<(), Failure> {
         if let Some(path) = &self.scenario {
-            let file = Crowd::at_door(DISCS, 1.0, DEPTHS_M[0]).file(1, LIMIT_S);
+            let file = Crowd::at_door(ROBOTS, 1.0, DEPTHS_M[0]).file(1, LIMIT_S);
             let scenario = Scenario::try_from(file).map_err(|broken| Failure::run(format!("{broken:?}")))?;
             return std::fs::write(path, scenario.resolved()).map_err(Failure::storage);
         }
@@ -121,11 +121,11 @@ impl Options {
         };
         let doors = DEPTHS_M.iter().flat_map(|depth| WIDTHS_M.map(|width| [width, *depth]));
         let doors = doors.map(|[width_m, depth_m]| {
-            let passages = passages(Crowd::at_door(DISCS, width_m, depth_m))?;
+            let passages = passages(Crowd::at_door(ROBOTS, width_m, depth_m))?;
             Ok(AtDoor { width_m, depth_m, passages })
         });
         let corridors = CORRIDORS_M.iter().map(|ends| {
-            let passages = passages(Crowd::at_corridor(DISCS, ends[0], ends[1]))?;
+            let passages = passages(Crowd::at_corridor(ROBOTS, ends[0], ends[1]))?;
             Ok(InCorridor { ends_m: *ends, passages })
         });
         let squares = AGENTS.iter().map(|agents| {

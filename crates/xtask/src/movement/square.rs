@@ -66,15 +66,15 @@ impl Agent {
 
     /// Whether both can go straight at their preferred speeds and keep clear of each other.
     fn is_clear_of(&self, other: &Self) -> bool {
-        let [first, last] = [self, other].map(Self::straight_s);
-        let [first, last] = [first.min(last), first.max(last)];
+        let [mine, others] = [self, other].map(Self::straight_s);
+        let (sooner, later) = (mine.min(others), mine.max(others));
         let apart = |[from, to]: [f64; 2]| {
             // Both move evenly between the two times, so that the way between them is a straight line.
             let between = |time| [0, 1].map(|k| self.at(time)[k] - other.at(time)[k]);
             to_origin(between(from), between(to))
         };
-        let least = self.radius_m + other.radius_m + CLOSE_M;
-        [[0.0, first], [first, last]].into_iter().all(|times| apart(times) >= least)
+        let closest = self.radius_m + other.radius_m + CLOSE_M;
+        [[0.0, sooner], [sooner, later]].into_iter().all(|times| apart(times) >= closest)
     }
 }
 
@@ -94,19 +94,20 @@ fn to_origin(a: Point, b: Point) -> f64 {
 /// The case of a seed: no agent can go straight past all those drawn before it.
 #[must_use]
 pub fn case(agents: u32, seed: u64) -> Vec<Agent> {
-    let mut draws = ChaCha8Rng::seed_from_u64(seed);
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut half = 0.5 + f64::from(agents) / 2.0;
     let mut drawn: Vec<Agent> = Vec::new();
     while drawn.len() < agents as usize {
-        let radius_m = draws.random_range(RADIUS_M[0]..RADIUS_M[1]);
-        let speeds = [0, 1].map(|_| draws.random_range(SPEED_MPS[0]..SPEED_MPS[1]));
+        let radius_m = random.random_range(RADIUS_M[0]..RADIUS_M[1]);
+        let speeds = [0, 1].map(|_| random.random_range(SPEED_MPS[0]..SPEED_MPS[1]));
         let speed_mps = f64::max(speeds[0], speeds[1]);
         let agent = loop {
             half *= GROWTH;
-            let start = [0, 1].map(|_| draws.random_range(-half..half));
-            let mut goal = [0, 1].map(|_| draws.random_range(-half..half));
-            let (axis, sign) = (draws.random_range(0..2_usize), [-1.0, 1.0][draws.random_range(0..2_usize)]);
-            goal[axis] = sign * half * (1.0 - AT_SIDE * draws.random_range(0.0..1.0));
+            let start = [0, 1].map(|_| random.random_range(-half..half));
+            let mut goal = [0, 1].map(|_| random.random_range(-half..half));
+            let (axis, sign) =
+                (random.random_range(0..2_usize), [-1.0, 1.0][random.random_range(0..2_usize)]);
+            goal[axis] = sign * half * (1.0 - AT_SIDE * random.random_range(0.0..1.0));
             let agent = Agent { start, goal, radius_m, speed_mps };
             let is_apart = |other: &Agent| {
                 let least = radius_m + other.radius_m + CLOSE_M;
@@ -158,9 +159,8 @@ fn arrivals(agents: &[Agent], seed: u64) -> Result<Arrivals, LayoutError> {
         }
         let robots = &simulation.world().robots;
         for (i, a) in robots.iter().enumerate() {
-            let overlaps = |b: &usar_sim::robot::Robot| {
-                (a.position - b.position).length() < a.radius() + b.radius()
-            };
+            let overlaps =
+                |b: &usar_sim::robot::Robot| (a.position - b.position).length() < a.radius() + b.radius();
             arrivals.collided |= robots[i + 1..].iter().any(overlaps);
         }
     }

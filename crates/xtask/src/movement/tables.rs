@@ -4,9 +4,9 @@ use reports::{Labels, Series, chart};
 use statistics::bootstrap::quantile;
 
 use super::literature::{Power, Published, Quantity, weidmann};
-use super::{AtDoor, DEPTHS_M, DISCS, InSquare, Measured};
+use super::{AtDoor, DEPTHS_M, InSquare, Measured, ROBOTS};
 
-/// Width of the classes of density, in discs a square metre, and the fewest samples of one.
+/// Width of the classes of density, in robots a square metre, and the fewest samples of one.
 const CLASS_PER_M2: f64 = 0.5;
 const FEWEST: usize = 20;
 
@@ -22,11 +22,13 @@ pub(super) struct Figure {
     pub svg: String,
 }
 
-/// Discs in corridors at densities of a class.
+/// Robots in corridors at densities of a class.
 struct Class {
     samples: usize,
     per_m2: f64,
     speed_mps: f64,
+    /// Share of the robots that stand.
+    standing: f64,
     /// The mean of the published speeds in the class.
     published_mps: Option<f64>,
 }
@@ -44,8 +46,8 @@ pub(super) fn all(measured: &Measured, published: &[Published], powers: &[Power]
 
 /// Both figures.
 pub(super) fn figures(measured: &Measured, published: &[Published]) -> Vec<Figure> {
-    let flow = Labels { title: "Flow through a door", x: "width, m", y: "people or discs a second" };
-    let speed = Labels { title: "Speed in a corridor", x: "people or discs a square metre", y: "m/s" };
+    let flow = Labels { title: "Flow through a door", x: "width, m", y: "people or robots a second" };
+    let speed = Labels { title: "Speed in a corridor", x: "people or robots a square metre", y: "m/s" };
     vec![
         Figure { name: "flow.svg", svg: chart(flow, &flow_series(&measured.doors, published)) },
         Figure { name: "density.svg", svg: chart(speed, &speed_series(measured, published)) },
@@ -55,7 +57,7 @@ pub(super) fn figures(measured: &Measured, published: &[Published]) -> Vec<Figur
 fn table(header: &str, rows: impl Iterator<Item = String>) -> String {
     let columns = header.matches('|').count() - 1;
     let mut text = format!("{header}\n|{}\n", " --- |".repeat(columns));
-    rows.for_each(|row| text += &format!("{row}\n"));
+    rows.for_each(|row| text.extend([row.as_str(), "\n"]));
     text
 }
 
@@ -68,6 +70,10 @@ fn or_dash(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.2}"))
 }
 
+fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
 /// The flows of the seeds in which nobody gave up.
 fn flows(door: &AtDoor) -> impl Iterator<Item = f64> + '_ {
     door.passages.iter().filter(|passage| !passage.jammed).filter_map(|passage| passage.flow_per_s)
@@ -76,10 +82,12 @@ fn flows(door: &AtDoor) -> impl Iterator<Item = f64> + '_ {
 fn flow(doors: &[AtDoor], published: &[Published]) -> String {
     let (shallow, deep) = doors.split_at(doors.len() / DEPTHS_M.len());
     let ours = |door: &AtDoor| {
-        let (low, high) = flows(door).fold((f64::INFINITY, 0.0_f64), |(a, b), flow| (a.min(flow), b.max(flow)));
+        let (low, high) =
+            flows(door).fold((f64::INFINITY, 0.0_f64), |(a, b), flow| (a.min(flow), b.max(flow)));
         let jammed = door.passages.iter().filter(|passage| passage.jammed).count();
         let all = door.passages.len();
-        let flow = mean(flows(door)).map_or("-".to_owned(), |mean| format!("{mean:.2} ({low:.2} to {high:.2})"));
+        let flow =
+            mean(flows(door)).map_or("-".to_owned(), |mean| format!("{mean:.2} ({low:.2} to {high:.2})"));
         format!("{flow} | {jammed} of {all}")
     };
     let of_people = |width: f64| {
@@ -89,10 +97,11 @@ fn flow(doors: &[AtDoor], published: &[Published]) -> String {
         if told.is_empty() { "-".to_owned() } else { told.join(", ") }
     };
     let row = |(a, b): (&AtDoor, &AtDoor)| {
-        format!("| {} | {} | {} | {} |", a.width_m, of_people(a.width_m), ours(a), ours(b))
+        let a_metre = or_dash(mean(flows(a)).map(|flow| flow / a.width_m));
+        format!("| {} | {} | {} | {a_metre} | {} |", a.width_m, of_people(a.width_m), ours(a), ours(b))
     };
     let header = format!(
-        "| width, m | people a second | discs a second, {} m deep | jams | {} m deep | jams |",
+        "| width, m | people a second | robots a second, {} m deep | jams | a metre of width | {} m deep | jams |",
         DEPTHS_M[0], DEPTHS_M[1]
     );
     table(&header, shallow.iter().zip(deep).map(row))
@@ -108,7 +117,7 @@ fn flow_series(doors: &[AtDoor], published: &[Published]) -> Vec<Series> {
         add(&mut series, &one.series, [one.x, one.y * one.x]);
     }
     for door in doors {
-        let name = format!("discs, {} m deep", door.depth_m);
+        let name = format!("robots, {} m deep", door.depth_m);
         flows(door).for_each(|flow| add(&mut series, &name, [door.width_m, flow]));
     }
     series
@@ -129,11 +138,13 @@ fn classes(measured: &Measured, published: &[Published]) -> Vec<Class> {
     let last = samples.iter().map(|sample| class_of(sample.per_m2)).max().unwrap_or(0);
     let class = |class: usize| {
         let here = || samples.iter().filter(move |sample| class_of(sample.per_m2) == class);
-        let people = published.iter().filter(|one| one.quantity == Quantity::Speed && class_of(one.x) == class);
+        let people =
+            published.iter().filter(|one| one.quantity == Quantity::Speed && class_of(one.x) == class);
         Some(Class {
             samples: here().count(),
             per_m2: mean(here().map(|sample| sample.per_m2))?,
             speed_mps: mean(here().map(|sample| sample.speed_mps))?,
+            standing: mean(here().map(|sample| sample.standing))?,
             published_mps: mean(people.map(|one| one.y)),
         })
     };
@@ -143,16 +154,17 @@ fn classes(measured: &Measured, published: &[Published]) -> Vec<Class> {
 fn speed(measured: &Measured, published: &[Published]) -> String {
     let row = |class: Class| {
         format!(
-            "| {:.2} | {} | {:.2} | {:.2} | {} |",
+            "| {:.2} | {} | {:.2} | {} | {:.2} | {} |",
             class.per_m2,
             class.samples,
             class.speed_mps,
+            percent(class.standing),
             weidmann(class.per_m2),
             or_dash(class.published_mps)
         )
     };
     table(
-        "| discs a m² | samples | discs, m/s | Weidmann, m/s | people in corridors, m/s |",
+        "| robots a m² | samples | robots, m/s | of these stand | Weidmann, m/s | people in corridors, m/s |",
         classes(measured, published).into_iter().map(row),
     )
 }
@@ -163,7 +175,7 @@ fn speed_series(measured: &Measured, published: &[Published]) -> Vec<Series> {
         add(&mut series, &one.series, [one.x, one.y]);
     }
     for class in classes(measured, published) {
-        add(&mut series, "discs", [class.per_m2, class.speed_mps]);
+        add(&mut series, "robots", [class.per_m2, class.speed_mps]);
     }
     let points = (2..=54).map(|tenth| [f64::from(tenth) / 10.0, weidmann(f64::from(tenth) / 10.0)]).collect();
     series.push(Series { name: "Weidmann 1993".to_owned(), points, is_line: true });
@@ -176,17 +188,18 @@ fn corridors(measured: &Measured) -> String {
         let through: usize = corridor.passages.iter().map(|passage| passage.through).sum();
         let jammed = corridor.passages.iter().filter(|passage| passage.jammed).count();
         format!(
-            "| {} | {} | {} | {} | {through} of {} | {jammed} of {} |",
+            "| {} | {} | {} | {} | {} | {through} of {} | {jammed} of {} |",
             corridor.ends_m[0],
             corridor.ends_m[1],
             or_dash(mean(samples().map(|sample| sample.per_m2))),
             or_dash(mean(samples().map(|sample| sample.speed_mps))),
-            DISCS as usize * corridor.passages.len(),
+            mean(samples().map(|sample| sample.standing)).map_or("-".to_owned(), percent),
+            ROBOTS as usize * corridor.passages.len(),
             corridor.passages.len(),
         )
     };
     table(
-        "| entrance, m | exit, m | discs a m² | m/s | half way | jams |",
+        "| entrance, m | exit, m | robots a m² | m/s | of these stand | half way | jams |",
         measured.corridors.iter().map(row),
     )
 }
@@ -194,7 +207,7 @@ fn corridors(measured: &Measured) -> String {
 fn square(squares: &[InSquare]) -> String {
     let row = |square: &InSquare| {
         let all = square.outcomes.len() as f64;
-        let percent = |count: usize| 100.0 * count as f64 / all;
+        let share = |count: usize| percent(count as f64 / all);
         let collided = square.outcomes.iter().filter(|outcome| outcome.collided).count();
         let stuck = square.outcomes.iter().filter(|outcome| outcome.stuck).count();
         let good = || square.outcomes.iter().filter(|outcome| !outcome.collided && !outcome.stuck);
@@ -202,11 +215,11 @@ fn square(squares: &[InSquare]) -> String {
         extra.sort_by(f64::total_cmp);
         let at = |share| if extra.is_empty() { f64::NAN } else { quantile(&extra, share) };
         format!(
-            "| {} | {:.0} % | {:.0} % | {:.0} % | {} | {:.2} | {:.2} | {} |",
+            "| {} | {} | {} | {} | {} | {:.2} | {:.2} | {} |",
             square.agents,
-            percent(good().count()),
-            percent(collided),
-            percent(stuck),
+            share(good().count()),
+            share(collided),
+            share(stuck),
             or_dash(mean(extra.iter().copied())),
             at(0.75),
             at(0.9),
@@ -221,15 +234,19 @@ fn square(squares: &[InSquare]) -> String {
 
 fn energy(powers: &[Power]) -> String {
     let row = |power: &Power| {
+        let standing = powers.iter().find(|one| one.robot == power.robot && one.speed_mps == 0.0);
+        let per_metre = standing.and_then(|standing| power.per_metre(standing));
         format!(
-            "| {} | {} | {} | {} | {:.5} | {:.1} |",
+            "| {} | {} | {} | {} | {:.5} | {} | {:.1} |",
             power.robot,
             power.state,
             power.watts,
             power.battery_wh,
             power.per_second(),
+            per_metre.map_or("-".to_owned(), |percent| format!("{percent:.5}")),
             power.battery_wh / power.watts
         )
     };
-    table("| robot | | W | battery, Wh | `per_second`, % | lasts, h |", powers.iter().map(row))
+    let header = "| robot | | W | battery, Wh | as `per_second` alone | driving as `per_metre` | lasts, h |";
+    table(header, powers.iter().map(row))
 }
