@@ -113,12 +113,13 @@ fn is_flow_at(one: &Published, width_m: f64) -> bool {
 
 fn flow_series(doors: &[AtDoor], published: &[Published]) -> Vec<Series> {
     let mut series: Vec<Series> = Vec::new();
-    for one in published.iter().filter(|one| one.quantity == Quantity::SpecificFlow) {
-        add(&mut series, &one.series, [one.x, one.y * one.x]);
-    }
     for door in doors {
         let name = format!("robots, {} m deep", door.depth_m);
         flows(door).for_each(|flow| add(&mut series, &name, [door.width_m, flow]));
+    }
+    // People last, so that they are drawn above the robots.
+    for one in published.iter().filter(|one| one.quantity == Quantity::SpecificFlow) {
+        add(&mut series, &one.series, [one.x, one.y * one.x]);
     }
     series
 }
