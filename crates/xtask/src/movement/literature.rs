@@ -51,6 +51,29 @@ pub struct Power {
     pub source: String,
 }
 
+/// What came of the cases of a number of agents in a square under another method.
+#[derive(Debug, Clone, Deserialize)]
+pub struct Peer {
+    /// The method.
+    pub method: String,
+    /// Number of agents.
+    pub agents: u32,
+    /// Number of cases.
+    pub cases: u32,
+    /// Cases in which two agents touched.
+    pub touched: u32,
+    /// Cases in which an agent did not arrive.
+    pub stuck: u32,
+    /// Mean extra time, and its 75th and 90th percentiles, in seconds.
+    pub extra_s: f64,
+    /// See `extra_s`.
+    pub p75_s: f64,
+    /// See `extra_s`.
+    pub p90_s: f64,
+    /// Mean extra time of the agents when each is alone, in seconds.
+    pub alone_s: f64,
+}
+
 impl Power {
     /// The power as `costs.energy.per_second`: percent of the battery a second.
     #[must_use]
@@ -85,6 +108,14 @@ pub fn published() -> Result<Vec<Published>, csv::Error> {
 /// A line is no measured power.
 pub fn powers() -> Result<Vec<Power>, csv::Error> {
     rows(include_bytes!("energy.csv"))
+}
+
+/// What came of the cases of the square under other methods, by `just peers`.
+///
+/// # Errors
+/// A line is no such row.
+pub fn peers() -> Result<Vec<Peer>, csv::Error> {
+    rows(include_bytes!("../../peers/square.csv"))
 }
 
 fn rows<T: for<'de> Deserialize<'de>>(text: &[u8]) -> Result<Vec<T>, csv::Error> {

@@ -7,7 +7,7 @@ mod page;
 pub mod square;
 mod tables;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -48,6 +48,9 @@ struct Options {
     /// The folder with movement.md, whose tables and figures are renewed; without, the tables are printed only
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Writes the cases of the square for other programs instead, one line of JSON for each
+    #[arg(long, value_name = "FILE")]
+    worlds: Option<PathBuf>,
     /// Writes the first crowd before a door of a metre to this file instead
     #[arg(long, value_name = "FILE.ron")]
     scenario: Option<PathBuf>,
@@ -98,10 +101,15 @@ impl Options {
             let scenario = Scenario::try_from(file).map_err(|broken| Failure::run(format!("{broken:?}")))?;
             return std::fs::write(path, scenario.resolved()).map_err(Failure::storage);
         }
+        if let Some(path) = &self.worlds {
+            return self.write_cases(path);
+        }
         let measured = self.measured().map_err(Failure::run)?;
         let published = literature::published().map_err(Failure::run)?;
         let powers = literature::powers().map_err(Failure::run)?;
-        let tables = tables::all(&measured, &published, &powers);
+        let peers = literature::peers().map_err(Failure::run)?;
+        let mut tables = tables::crowds(&measured, &published);
+        tables.extend([tables::square(&measured.squares, &peers), tables::energy(&powers)]);
         for table in &tables {
             println!("{}\n\n{}", table.title, table.rows);
         }
@@ -113,6 +121,17 @@ impl Options {
             std::fs::write(path, figure.svg).map_err(Failure::storage)?;
         }
         Ok(())
+    }
+
+    fn write_cases(&self, path: &Path) -> Result<(), Failure> {
+        let mut text = String::new();
+        for agents in AGENTS {
+            for seed in 1..=self.cases {
+                let case = serde_json::json!({ "seed": seed, "agents": square::case(agents, seed) });
+                text.extend([case.to_string().as_str(), "\n"]);
+            }
+        }
+        std::fs::write(path, text).map_err(Failure::storage)
     }
 
     fn measured(&self) -> Result<Measured, LayoutError> {

@@ -3,6 +3,7 @@
 //! github.com/mit-acl/gym-collision-avoidance, with the ranges of `gen_results_multi.py` there).
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+use serde::Serialize;
 use usar_sim::event::Event;
 use usar_sim::scenario::{Body, Errand, LayoutError, Point, Scenario};
 use usar_sim::simulation::{Advance, Simulation};
@@ -27,7 +28,7 @@ const GROWTH: f64 = 1.01;
 const AROUND_M: f64 = 3.0;
 
 /// An agent.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize)]
 pub struct Agent {
     /// Where it starts, from the middle of the square, in metres.
     pub start: Point,

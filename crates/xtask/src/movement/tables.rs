@@ -3,7 +3,8 @@
 use reports::{Labels, Series, chart};
 use statistics::bootstrap::quantile;
 
-use super::literature::{Power, Published, Quantity, weidmann};
+use super::literature::{Peer, Power, Published, Quantity, weidmann};
+use super::square::Outcome;
 use super::{AtDoor, DEPTHS_M, InSquare, Measured, ROBOTS};
 
 /// Width of the classes of density, in robots a square metre, and the fewest samples of one.
@@ -33,14 +34,12 @@ struct Class {
     published_mps: Option<f64>,
 }
 
-/// All tables.
-pub(super) fn all(measured: &Measured, published: &[Published], powers: &[Power]) -> Vec<Table> {
+/// The tables of crowds.
+pub(super) fn crowds(measured: &Measured, published: &[Published]) -> Vec<Table> {
     vec![
         Table { title: "flow", rows: flow(&measured.doors, published) },
         Table { title: "speed", rows: speed(measured, published) },
         Table { title: "corridors", rows: corridors(measured) },
-        Table { title: "square", rows: square(&measured.squares) },
-        Table { title: "energy", rows: energy(powers) },
     ]
 }
 
@@ -205,35 +204,51 @@ fn corridors(measured: &Measured) -> String {
     )
 }
 
-fn square(squares: &[InSquare]) -> String {
-    let row = |square: &InSquare| {
-        let all = square.outcomes.len() as f64;
-        let share = |count: usize| percent(count as f64 / all);
-        let collided = square.outcomes.iter().filter(|outcome| outcome.collided).count();
-        let stuck = square.outcomes.iter().filter(|outcome| outcome.stuck).count();
+/// The cases of the square, beside those of other methods.
+pub(super) fn square(squares: &[InSquare], peers: &[Peer]) -> Table {
+    let ours = |square: &InSquare| {
+        let count =
+            |is: fn(&Outcome) -> bool| square.outcomes.iter().filter(|outcome| is(outcome)).count() as u32;
         let good = || square.outcomes.iter().filter(|outcome| !outcome.collided && !outcome.stuck);
         let mut extra: Vec<f64> = good().map(|outcome| outcome.extra_s).collect();
         extra.sort_by(f64::total_cmp);
         let at = |share| if extra.is_empty() { f64::NAN } else { quantile(&extra, share) };
-        format!(
-            "| {} | {} | {} | {} | {} | {:.2} | {:.2} | {} |",
-            square.agents,
-            share(good().count()),
-            share(collided),
-            share(stuck),
-            or_dash(mean(extra.iter().copied())),
-            at(0.75),
-            at(0.9),
-            or_dash(mean(good().map(|outcome| outcome.extra_alone_s))),
-        )
+        let peer = Peer {
+            method: "this project's default rule".to_owned(),
+            agents: square.agents,
+            cases: square.outcomes.len() as u32,
+            touched: count(|outcome| outcome.collided),
+            stuck: count(|outcome| outcome.stuck),
+            extra_s: mean(extra.iter().copied()).unwrap_or(f64::NAN),
+            p75_s: at(0.75),
+            p90_s: at(0.9),
+            alone_s: mean(good().map(|outcome| outcome.extra_alone_s)).unwrap_or(f64::NAN),
+        };
+        row(&peer)
     };
-    table(
-        "| agents | success | bodies touch | stuck | extra time, s | 75th percentile | 90th | alone |",
-        squares.iter().map(row),
+    let rows = squares.iter().map(ours).chain(peers.iter().map(row));
+    let header =
+        "| method | agents | bodies touch | stuck | extra time, s | 75th percentile | 90th | alone |";
+    Table { title: "square", rows: table(header, rows) }
+}
+
+fn row(peer: &Peer) -> String {
+    let share = |count: u32| percent(f64::from(count) / f64::from(peer.cases));
+    format!(
+        "| {} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} |",
+        peer.method,
+        peer.agents,
+        share(peer.touched),
+        share(peer.stuck),
+        peer.extra_s,
+        peer.p75_s,
+        peer.p90_s,
+        peer.alone_s
     )
 }
 
-fn energy(powers: &[Power]) -> String {
+/// Measured powers as costs.
+pub(super) fn energy(powers: &[Power]) -> Table {
     let row = |power: &Power| {
         let standing = powers.iter().find(|one| one.robot == power.robot && one.speed_mps == 0.0);
         let per_metre = standing.and_then(|standing| power.per_metre(standing));
@@ -249,5 +264,5 @@ fn energy(powers: &[Power]) -> String {
         )
     };
     let header = "| robot | | W | battery, Wh | as `per_second` alone | driving as `per_metre` | lasts, h |";
-    table(header, powers.iter().map(row))
+    Table { title: "energy", rows: table(header, powers.iter().map(row)) }
 }
