@@ -204,46 +204,53 @@ fn corridors(measured: &Measured) -> String {
     )
 }
 
-/// The cases of the square, beside those of other methods.
+/// The cases of the square, beside those of other methods: a column for each.
 pub(super) fn square(squares: &[InSquare], peers: &[Peer]) -> Table {
-    let ours = |square: &InSquare| {
-        let count =
-            |is: fn(&Outcome) -> bool| square.outcomes.iter().filter(|outcome| is(outcome)).count() as u32;
-        let good = || square.outcomes.iter().filter(|outcome| !outcome.collided && !outcome.stuck);
-        let mut extra: Vec<f64> = good().map(|outcome| outcome.extra_s).collect();
-        extra.sort_by(f64::total_cmp);
-        let at = |share| if extra.is_empty() { f64::NAN } else { quantile(&extra, share) };
-        let peer = Peer {
-            method: "this project's default rule".to_owned(),
-            agents: square.agents,
-            cases: square.outcomes.len() as u32,
-            touched: count(|outcome| outcome.collided),
-            stuck: count(|outcome| outcome.stuck),
-            extra_s: mean(extra.iter().copied()).unwrap_or(f64::NAN),
-            p75_s: at(0.75),
-            p90_s: at(0.9),
-            alone_s: mean(good().map(|outcome| outcome.extra_alone_s)).unwrap_or(f64::NAN),
+    let mut methods: Vec<&str> = peers.iter().map(|peer| peer.method.as_str()).collect();
+    methods.dedup();
+    let row = |square: &InSquare| {
+        let of = |method: &&str| {
+            let peer = peers.iter().find(|peer| peer.agents == square.agents && peer.method == **method);
+            peer.map_or("-".to_owned(), told)
         };
-        row(&peer)
+        let others: Vec<String> = methods.iter().map(of).collect();
+        format!("| {} | {} | {} |", square.agents, told(&ours(square)), others.join(" | "))
     };
-    let rows = squares.iter().map(ours).chain(peers.iter().map(row));
-    let header =
-        "| method | agents | bodies touch | stuck | extra time, s | 75th percentile | 90th | alone |";
-    Table { title: "square", rows: table(header, rows) }
+    let header = format!("| agents | default rule | {} |", methods.join(" | "));
+    Table { title: "square", rows: table(&header, squares.iter().map(row)) }
 }
 
-fn row(peer: &Peer) -> String {
+/// The cases of the default rule, as those of any method.
+fn ours(square: &InSquare) -> Peer {
+    let count =
+        |is: fn(&Outcome) -> bool| square.outcomes.iter().filter(|outcome| is(outcome)).count() as u32;
+    let good = || square.outcomes.iter().filter(|outcome| !outcome.collided && !outcome.stuck);
+    let mut extra: Vec<f64> = good().map(|outcome| outcome.extra_s).collect();
+    extra.sort_by(f64::total_cmp);
+    let at = |share| if extra.is_empty() { f64::NAN } else { quantile(&extra, share) };
+    Peer {
+        method: String::new(),
+        agents: square.agents,
+        cases: square.outcomes.len() as u32,
+        touched: count(|outcome| outcome.collided),
+        stuck: count(|outcome| outcome.stuck),
+        extra_s: mean(extra.iter().copied()).unwrap_or(f64::NAN),
+        p75_s: at(0.75),
+        p90_s: at(0.9),
+        alone_s: mean(good().map(|outcome| outcome.extra_alone_s)).unwrap_or(f64::NAN),
+    }
+}
+
+fn told(peer: &Peer) -> String {
     let share = |count: u32| percent(f64::from(count) / f64::from(peer.cases));
     format!(
-        "| {} | {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} |",
-        peer.method,
-        peer.agents,
-        share(peer.touched),
-        share(peer.stuck),
+        "{:.2} ({:.2}, {:.2}); alone {:.2}; {} touch, {} stuck",
         peer.extra_s,
         peer.p75_s,
         peer.p90_s,
-        peer.alone_s
+        peer.alone_s,
+        share(peer.touched),
+        share(peer.stuck)
     )
 }
 
