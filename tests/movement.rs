@@ -1,5 +1,5 @@
-//! Movement beside the literature: its figures are read with their sources, Weidmann's relation is Weidmann's,
-//! and small crowds are measured.
+//! Movement beside the literature: its figures are read with their sources, Weidmann's relation has its
+//! values, and small crowds are measured.
 
 use xtask::movement::crowd::{Crowd, steady_flow};
 use xtask::movement::literature::{Quantity, powers, published, weidmann};

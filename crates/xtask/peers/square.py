@@ -63,7 +63,8 @@ def main(worlds, out):
                 outcomes[horizon_s, len(agents)].append((*run(agents, horizon_s), numpy.mean(alone)))
     with open(out, "w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\n")
-        rows.writerow(["method", "agents", "cases", "touched", "stuck", "extra_s", "p75_s", "p90_s", "alone_s"])
+        counts, times = ["cases", "touched", "stuck"], ["extra_s", "p75_s", "p90_s", "alone_s"]
+        rows.writerow(["method", "agents", *counts, *times])
         for (horizon_s, agents), cases in sorted(outcomes.items()):
             good = [case[2] for case in cases if not case[0] and not case[1]]
             touched, stuck = (sum(case[k] for case in cases) for k in (0, 1))

@@ -37,7 +37,8 @@ fn main() -> ExitCode {
         _ => {
             eprintln!(
                 "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, grid, kills, limits, \
-                 million, movement, mutations, navigation, pages, quiet, reference, scale, scenarios, soak, work, worlds"
+                 million, movement, mutations, navigation, pages, quiet, reference, scale, scenarios, soak, \
+                 work, worlds"
             );
             ExitCode::from(2)
         }

@@ -1,5 +1,5 @@
-//! A crowd of robots in a room, and its way out: a door, or a corridor between two doors, into a hall. What is
-//! measured is measured where and how the experiments with people did.
+//! A crowd of robots in a room, and its way out into a hall: a door, or a corridor between two doors. It is
+//! measured where and how people in experiments were.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use usar_sim::event::Event;

@@ -5,7 +5,8 @@ use serde::Deserialize;
 /// Weidmann's free speed, in metres per second: the preferred speed of the robots, too.
 pub const FREE_SPEED_MPS: f64 = 1.34;
 
-/// The constants of Weidmann's relation: a shape in people a square metre, and the density at which all stand.
+/// The constants of Weidmann's relation, in people a square metre: its shape, and the density at which all
+/// stand.
 const SHAPE_PER_M2: f64 = 1.913;
 const JAM_PER_M2: f64 = 5.4;
 
@@ -81,8 +82,8 @@ impl Power {
         self.percent(self.watts)
     }
 
-    /// What driving adds to this power at a stand as `costs.energy.per_metre`: percent of the battery a metre;
-    /// `None` for a robot that stands.
+    /// What driving adds to the power at a stand, as `costs.energy.per_metre`: percent of the battery a
+    /// metre. `None` for a robot that stands.
     #[must_use]
     pub fn per_metre(&self, standing: &Self) -> Option<f64> {
         (self.speed_mps > 0.0).then(|| self.percent((self.watts - standing.watts) / self.speed_mps))
@@ -122,8 +123,8 @@ fn rows<T: for<'de> Deserialize<'de>>(text: &[u8]) -> Result<Vec<T>, csv::Error>
     csv::Reader::from_reader(text).deserialize().collect()
 }
 
-/// Weidmann's relation (1993): the mean speed of people, in metres per second, at a density in people a square
-/// metre.
+/// Weidmann's relation (1993): the mean speed of people, in metres per second, at a density in people a
+/// square metre.
 #[must_use]
 pub fn weidmann(per_m2: f64) -> f64 {
     if per_m2 <= 0.0 {

@@ -45,7 +45,7 @@ struct Options {
     /// Random cases of the square for each number of agents
     #[arg(long, value_name = "N", default_value_t = 100)]
     cases: u64,
-    /// The folder with movement.md, whose tables and figures are renewed; without, the tables are printed only
+    /// The folder with movement.md, whose tables and figures are renewed; without, tables are printed only
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Writes the cases of the square for other programs instead, one line of JSON for each

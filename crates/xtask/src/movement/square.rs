@@ -1,5 +1,5 @@
-//! Agents with random starts, goals, radii and speeds in a square: the problems of CADRL (Chen, Liu, Everett and
-//! How, 2017, arXiv 1609.07845), drawn by the rules of the authors' public code (`generate_rand_case` in
+//! Agents with random starts, goals, radii and speeds in a square: the problems of CADRL (Chen, Liu, Everett
+//! and How, 2017, arXiv 1609.07845), drawn by the rules of the authors' public code (`generate_rand_case` in
 //! github.com/mit-acl/gym-collision-avoidance, with the ranges of `gen_results_multi.py` there).
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};

@@ -100,7 +100,7 @@ fn flow(doors: &[AtDoor], published: &[Published]) -> String {
         format!("| {} | {} | {} | {a_metre} | {} |", a.width_m, of_people(a.width_m), ours(a), ours(b))
     };
     let header = format!(
-        "| width, m | people a second | robots a second, {} m deep | jams | a metre of width | {} m deep | jams |",
+        "| width, m | people a second | robots a second, {} m deep | jams | a metre wide | {} m deep | jams |",
         DEPTHS_M[0], DEPTHS_M[1]
     );
     table(&header, shallow.iter().zip(deep).map(row))
@@ -164,7 +164,7 @@ fn speed(measured: &Measured, published: &[Published]) -> String {
         )
     };
     table(
-        "| robots a m² | samples | robots, m/s | of these stand | Weidmann, m/s | people in corridors, m/s |",
+        "| robots a m² | samples | m/s | of these stand | Weidmann, m/s | people in corridors, m/s |",
         classes(measured, published).into_iter().map(row),
     )
 }
