@@ -24,6 +24,10 @@ worlds:
 navigation *arguments:
     cargo run --release --package xtask -- navigation {{arguments}}
 
+# Crowds at doors and in corridors beside measured people, and the problems of CADRL; `--out docs` renews docs/movement.md
+movement *arguments:
+    cargo run --release --package xtask -- movement {{arguments}}
+
 # 510 random worlds with the engine at rest in quiet steps and with the engine always on: every hash is the same
 quiet *arguments:
     cargo run --release --package xtask -- quiet {{arguments}}
@@ -32,12 +36,14 @@ quiet *arguments:
 grid *arguments:
     cargo run --release --package xtask -- grid {{arguments}}
 
-# Other methods on the same problems (ORCA, HRVO, HL by the public Python packages): half an hour; renews crates/xtask/peers/peers.csv
+# Other methods on the same problems (ORCA, HRVO, HL by the public Python packages): half an hour; renews peers.csv and square.csv in crates/xtask/peers
 peers:
     cargo run --release --package xtask -- navigation --seeds 5 --worlds target/worlds.jsonl
     python3 -m venv target/peers
     target/peers/bin/pip install --quiet navground==0.7.0 pyrvo==0.4.3 numpy==2.4.6
     target/peers/bin/python crates/xtask/peers/peers.py target/worlds.jsonl crates/xtask/peers/peers.csv
+    cargo run --release --package xtask -- movement --worlds target/squares.jsonl
+    target/peers/bin/python crates/xtask/peers/square.py target/squares.jsonl crates/xtask/peers/square.csv
 
 # A sweep killed at 100 random moments: nothing lost, nothing done twice, the same bytes in the end
 kills *arguments:

@@ -13,6 +13,7 @@ mod limits;
 mod minimal;
 mod mission_readings;
 mod missions;
+mod movement;
 mod navigation;
 mod no_peeking;
 mod packages;

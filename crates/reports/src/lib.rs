@@ -4,6 +4,7 @@
 //! crates extend `templates/page.html`.
 
 mod case;
+mod chart;
 mod decisions;
 mod drawing;
 mod explored;
@@ -16,6 +17,7 @@ mod report;
 pub mod table;
 mod wanted;
 
+pub use chart::{Labels, Series, chart};
 pub use explored::{ranking, sensitivity_figure, sensitivity_table};
 pub use figures::distrust_map;
 pub use maps::ShownTrial;

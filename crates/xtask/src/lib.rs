@@ -17,6 +17,7 @@ pub mod grid;
 pub mod journeys;
 pub mod kills;
 pub mod limits;
+pub mod movement;
 pub mod mutations;
 pub mod navigation;
 pub mod pages;

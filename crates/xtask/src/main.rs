@@ -24,6 +24,7 @@ fn main() -> ExitCode {
         "million" => million::run(arguments),
         "mutations" => mutations::run(arguments),
         "limits" => limits::run(),
+        "movement" => xtask::movement::main(),
         "navigation" => xtask::navigation::main(),
         "pages" => pages::run(arguments),
         "quiet" => quiet::run(arguments),
@@ -36,7 +37,8 @@ fn main() -> ExitCode {
         _ => {
             eprintln!(
                 "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, grid, kills, limits, \
-                 million, mutations, navigation, pages, quiet, reference, scale, scenarios, soak, work, worlds"
+                 million, movement, mutations, navigation, pages, quiet, reference, scale, scenarios, soak, \
+                 work, worlds"
             );
             ExitCode::from(2)
         }
