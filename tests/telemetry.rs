@@ -221,3 +221,34 @@ fn changes(team: u64, policies: [&str; 4]) -> [bool; 4] {
         decide(&honest) != decide(&lied)
     })
 }
+
+/// In the tunnel health is speed, and speed can be seen: what mates say of two liars and of the others.
+#[test]
+fn mates_see_that_a_robot_is_slower_than_it_says() {
+    let text = std::fs::read_to_string(crate::support::root().join("scenarios/trust/tunnel.ron")).unwrap();
+    let lies = "(\n    deceit: [(who: Count(2), lie: Exaggerate(by: 1), on: [Hp])],";
+    let text = text.replacen('(', lies, 1).replace("duration_s: 1800.0", "duration_s: 600.0");
+    let scenario = Scenario::parse(&text, "tunnel.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let record = run(&scenario, "HP_DIS", 1);
+    let truly = |robot: u32| record.decisions[0].truth.as_ref().unwrap()[robot as usize].hp_level.unwrap();
+    let said = |robot: u32| record.decisions[0].question.members[robot as usize].hp_level.unwrap();
+    let liars: Vec<u32> = (0..12).filter(|robot| said(*robot) - truly(*robot) > 1.0).collect();
+    assert_eq!(liars.len(), 2);
+    let ratings = &record.heard.as_ref().unwrap().evidence.ratings;
+    let outcomes = |robot: u32| ratings.iter().filter(move |rating| rating.of == robot);
+    let mut seen = 0;
+    for robot in 0..12 {
+        let outcomes: Vec<f64> = outcomes(robot).map(|rating| rating.outcome(0.2, 2.25)).collect();
+        if outcomes.len() < 8 {
+            continue;
+        }
+        seen += 1;
+        let mean = outcomes.iter().sum::<f64>() / outcomes.len() as f64;
+        assert_eq!(mean < 0.5, liars.contains(&robot), "robot {robot}: {mean}");
+        let rating =
+            ratings.iter().filter(|rating| rating.of == robot).max_by(|a, b| a.looks.cmp(&b.looks)).unwrap();
+        let measured = rating.measured_hp(2.25, 0.1).unwrap();
+        assert!((measured - truly(robot)).abs() < 12.0, "robot {robot}: {measured}");
+    }
+    assert!(seen >= 8, "{seen}");
+}
