@@ -166,8 +166,8 @@ fn a_record_gives_each_question_back_with_its_evidence() {
     let evidence = last.evidence.as_ref().unwrap();
     assert!(evidence.reports.len() > 100 && evidence.ratings.len() > 20 && evidence.ledger.len() > 20);
     let heard = record.heard.unwrap();
-    let lost: u64 = heard.links.iter().map(|link| link.sent - link.heard).sum();
-    assert!(lost > 10 && heard.links.iter().all(|link| link.delay_s.unwrap() >= 0.2), "{:?}", heard.links);
+    let unheard: u64 = heard.links.iter().map(|link| link.sent - link.heard).sum();
+    assert!(unheard > 10 && heard.links.iter().all(|link| link.delay_s.unwrap() >= 0.2), "{:?}", heard.links);
 }
 
 /// Shares of 1,000 teams of 6, 4 and 2 whose grouping changes when one robot says "HP 31", and the shares that
@@ -198,9 +198,8 @@ fn changes(team: u64, policies: [&str; 4]) -> [bool; 4] {
         for i in 0..count {
             let x = 46.4 - width / 2.0 + width * f64::from(i) / f64::from(count - 1);
             let (energy, hp) = (level(80.0, 20.0, 30.0), level(90.0, 10.0, 30.0));
-            text += &format!(
-                "(role: {role:?}, count: 1, center: ({x}, {y}), width_m: 0, levels: (energy: {energy}, hp: {hp})),"
-            );
+            let levels = format!("levels: (energy: {energy}, hp: {hp})");
+            text.extend([format!("(role: {role:?}, count: 1, center: ({x}, {y}), width_m: 0, {levels}),")]);
         }
     }
     let liar = draws.random_range(0..12_u32);

@@ -121,8 +121,7 @@ pub(crate) fn verdicts_table(judged: &[Judged]) -> Table {
             main.iter().flat_map(|scenario| [&scenario.of_few, &scenario.of_all].map(|of| of[i].verdict));
         let together = over_worlds.as_ref().map(|verdicts| verdicts[i]);
         let verdicts = verdicts.chain(together).map(|verdict| verdict.words().to_owned());
-        let last =
-            (readings.len() > 1).then(|| counted(readings.iter().map(|world| world.of_all[i].verdict)));
+        let last = (readings.len() > 1).then(|| counted(&readings, i));
         table.add_row(std::iter::once(claim.words.to_owned()).chain(verdicts).chain(last).map(Cell::new));
     }
     table
@@ -138,12 +137,13 @@ fn reading(world: &str) -> &str {
     world.strip_prefix("paper-calibrated-").unwrap_or(world)
 }
 
-/// How often each verdict occurs, in words.
-fn counted(verdicts: impl Iterator<Item = Verdict> + Clone) -> String {
+/// How often each verdict on a claim occurs, in words.
+fn counted(worlds: &[&Judged], claim: usize) -> String {
     let all = [Verdict::Holds, Verdict::WithinMargin, Verdict::DoesNotHold, Verdict::Undecided];
-    let counts = all.map(|verdict| (verdicts.clone().filter(|found| *found == verdict).count(), verdict));
-    let words = counts.iter().filter(|(count, _)| *count > 0);
-    words.map(|(count, verdict)| format!("{}: {count}", verdict.words())).collect::<Vec<_>>().join(", ")
+    let is = |world: &&&Judged, verdict| world.of_all[claim].verdict == verdict;
+    let counts = all.map(|verdict| (worlds.iter().filter(|world| is(world, verdict)).count(), verdict));
+    let found = counts.iter().filter(|(count, _)| *count > 0);
+    found.map(|(count, verdict)| format!("{}: {count}", verdict.words())).collect::<Vec<_>>().join(", ")
 }
 
 /// For each comparison, the least and the largest difference over the worlds of all readings; `None` if there

@@ -35,7 +35,7 @@ impl Mission {
         let unit = scene.model.costs.unit;
         let Beliefs { team, ledger, .. } = &mut *scene.beliefs;
         ledger.end(team, unit, scene.step as f64 * scene.model.dt_s(), went_to_rest);
-        self.with_telemetry(scene, |telemetry, now, log| telemetry.rate(now, log));
+        self.with_telemetry(scene, Telemetry::rate);
         for (agent, robot) in self.crew.agents.iter_mut().zip(&scene.beliefs.team) {
             agent.task = None;
             if let Some([energy, hp]) = agent.levels_at_start {
@@ -62,7 +62,7 @@ impl Mission {
             }
             self.crew.agents[robot.id.index()].levels_at_start = Some([robot.energy, robot.hp]);
         }
-        self.with_telemetry(scene, |telemetry, now, log| telemetry.ask_at_home(now, log));
+        self.with_telemetry(scene, Telemetry::ask_at_home);
         if let Some(telemetry) = scene.telemetry.as_deref_mut() {
             telemetry.close_round(scene.beliefs.ledger.rounds(), scene.model, scene.step);
             telemetry.note_question(self.round);

@@ -77,9 +77,9 @@ impl Channel {
         }
         let heard_s = sent_s + medium.delay_s;
         if is_lost {
-            link.lost += 1
+            link.lost += 1;
         } else {
-            link.delay_s += heard_s - time_s
+            link.delay_s += heard_s - time_s;
         }
         (!is_lost).then_some(heard_s)
     }
@@ -161,9 +161,9 @@ mod tests {
         let chains = [(0.0, 1.0, 0.074_074_074, 4.0), (0.01, 0.8, 0.068_518_519, 2.103_348_303)];
         for (good, bad, mean_loss, mean_burst) in chains {
             let loss = Loss::GilbertElliott { p: 0.02, r: 0.25, good, bad };
-            let lost = losses(&MediumModel { loss, ..medium() }, Vector::ZERO, 100_000);
-            let all = lost.iter().filter(|lost| **lost).count() as f64;
-            let bursts = lost.windows(2).filter(|pair| !pair[0] && pair[1]).count() as f64;
+            let fates = losses(&MediumModel { loss, ..medium() }, Vector::ZERO, 100_000);
+            let all = fates.iter().filter(|lost| **lost).count() as f64;
+            let bursts = fates.windows(2).filter(|pair| !pair[0] && pair[1]).count() as f64;
             let error = (mean_loss * (1.0 - mean_loss) / 100_000.0 * 1.73 / 0.27_f64).sqrt();
             assert!((all / 100_000.0 - mean_loss).abs() < 3.0 * error, "{all}");
             assert!((all / bursts - mean_burst).abs() < 3.0 * mean_burst / bursts.sqrt(), "{bursts}");

@@ -36,7 +36,7 @@ fn wrapped(text: &str) -> String {
             lines.push(" ".repeat(START) + word);
         } else {
             let gap = if lines[last].is_empty() { "" } else { " " };
-            lines[last] += &format!("{gap}{word}");
+            lines[last].extend([gap, word]);
         }
     }
     lines.join("\n")
