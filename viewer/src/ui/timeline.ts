@@ -37,6 +37,11 @@ const ASKED_FOR = [
   'RescueesAppeared',
   'TaskBegan',
   'TaskEnded',
+  'BeganToLie',
+  'BecameHonest',
+  'Slowed',
+  'Faded',
+  'Muted',
 ];
 
 export class Timeline {
