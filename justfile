@@ -143,6 +143,11 @@ results:
     target/release/usar sweep scenarios/sweeps/right-of-way-crowded.ron
     target/release/usar sweep scenarios/sweeps/coarse.ron
     target/release/usar sweep scenarios/sweeps/coarse-leak.ron
+    target/release/usar sweep scenarios/sweeps/when-a-robot-rests.ron
+    target/release/usar sweep scenarios/sweeps/tunnel-slow-carriers.ron
+    target/release/usar sweep scenarios/sweeps/lies-tunnel.ron
+    target/release/usar sweep scenarios/sweeps/lies-convoy.ron
+    target/release/usar sweep scenarios/sweeps/lies-aftershocks.ron
 
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:

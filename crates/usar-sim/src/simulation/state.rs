@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
+use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
 use super::charge::{bearable, last_event, spend};
@@ -12,7 +13,6 @@ use crate::belief::Beliefs;
 use crate::conflict::{self, Delay, MANY_ROBOTS, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{ABSENT, HashChain, PARTS, part};
-use crate::ids::RobotId;
 use crate::medium;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
@@ -219,8 +219,12 @@ impl State {
         let (mission, beliefs, navigator) = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(&mut scratch.movers);
         movers.extend(beliefs.team.iter().map(|robot| mover(robot, model, mission, beliefs, navigator)));
-        self.faults.slow(&mut movers);
-        self.say_levels(model, &mut movers);
+        if !self.faults.is_empty() {
+            self.faults.slow(&mut movers);
+        }
+        if self.telemetry.is_some() {
+            self.say_levels(model, &mut movers);
+        }
         for (mover, track) in movers.iter_mut().zip(team_mates::tracks(&self.world)) {
             (mover.position, mover.velocity) = (track.position, track.velocity);
         }
@@ -245,7 +249,7 @@ impl State {
             return;
         }
         for mover in movers {
-            let class = class_of(&self.mission, mover.robot, model);
+            let class = class_of(self.mission.crew.agents[mover.robot.index()].task, model);
             let levels = telemetry.levels(rules, mover.robot);
             mover.priority = PriorityKey::new(model.right_of_way.priority, mover.robot, class, levels);
         }
@@ -350,9 +354,8 @@ fn step_costs(model: &Model, agent: &Agent, robot: &Robot, speed: f32, zones: us
 }
 
 /// The rank of a robot's task; after all tasks if it has none.
-fn class_of(mission: &Mission, robot: RobotId, model: &Model) -> u8 {
-    let no_task = model.tasks.len() as u8;
-    mission.crew.agents[robot.index()].task.map_or(no_task, |task| model.tasks[task.index()].rank)
+fn class_of(task: Option<TaskId>, model: &Model) -> u8 {
+    task.map_or(model.tasks.len() as u8, |task| model.tasks[task.index()].rank)
 }
 
 /// A robot as the resolver sees it.
@@ -367,7 +370,7 @@ fn mover<'s>(
     let preferred = if robot.is_able() { navigator.preferred_velocity(robot, speed) } else { Vector::ZERO };
     let route = navigator.traveller(robot.id).route();
     let agent = &mission.crew.agents[robot.id.index()];
-    let class = class_of(mission, robot.id, model);
+    let class = class_of(agent.task, model);
     let rule = model.right_of_way.priority;
     let is_busy = matches!(agent.activity, Activity::Loading(..) | Activity::Resting(_));
     Mover {
