@@ -19,6 +19,7 @@ mod files;
 mod grids;
 mod guarded;
 mod hostile;
+mod lies;
 mod reported;
 mod resumed;
 mod same_bytes;

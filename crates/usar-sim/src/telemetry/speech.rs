@@ -1,0 +1,109 @@
+//! What robots say: of themselves, and whether they lie about their mates.
+
+use std::collections::BTreeMap;
+
+use rne_core::{LevelReport, NeedId};
+
+use super::gauge::{Reading, read};
+use super::lie::Topic;
+use super::{Now, Says, Telemetry};
+use crate::event::EventLog;
+use crate::ids::RobotId;
+use crate::model::{LieModel, TelemetryModel};
+use crate::robot::Robot;
+use crate::scenario::Lie;
+
+/// Levels and needs of one robot have numbers of their own in streams of random numbers.
+const TOPICS: u64 = 128;
+
+impl Telemetry {
+    /// The lie about mates that a robot tells at a time.
+    pub(super) fn told_of_mates<'r>(
+        &self,
+        rules: &'r TelemetryModel,
+        by: RobotId,
+        time_s: f64,
+    ) -> Option<&'r LieModel> {
+        let lies = self.told[by.index()].iter().map(|told| &rules.lies[told.lie as usize]);
+        lies.into_iter().find(|lie| lie.is_told_at(time_s) && lie.lie.is_about_mates())
+    }
+
+    /// Lets a robot read its gauges and say how it is.
+    pub(super) fn report(&mut self, robot: &Robot, now: &Now<'_>, log: &mut EventLog) {
+        let Some(rules) = &now.model.telemetry else { return };
+        let id = robot.id;
+        let gauges = &rules.gauges[robot.role.index()];
+        let last = self.read[id.index()];
+        let reading = |level: usize, is: f64| {
+            let of = u64::from(id.0) * TOPICS + level as u64;
+            let reading = Reading { seed: rules.seed, of, step: now.step, time_s: now.time_s() };
+            let shown = read(&gauges[level], is, reading);
+            shown.or(last.map(|last| last[level])).unwrap_or_else(|| is.clamp(0.0, 100.0))
+        };
+        let read = [reading(0, robot.energy), reading(1, robot.hp)];
+        self.read[id.index()] = Some(read);
+        let (levels, needs) = self.said(robot, read, now);
+        let report = LevelReport {
+            of: id.0,
+            by: id.0,
+            round: now.round,
+            sent_s: now.time_s(),
+            heard_s: now.time_s(),
+            energy_level: levels[0],
+            hp_level: levels[1],
+            needs,
+            sd: [gauges[0].sd, gauges[1].sd],
+        };
+        let other = self.told[id.index()].iter().find_map(|told| {
+            let lie = &rules.lies[told.lie as usize];
+            let Lie::Impersonate { name } = lie.lie else { return None };
+            lie.is_told_at(now.time_s()).then_some(name)
+        });
+        let false_one = other.map(|name| LevelReport { of: name, by: name, ..report.clone() });
+        for report in [Some(report), false_one].into_iter().flatten() {
+            self.send(Says::Levels(report), robot, now, log);
+        }
+    }
+
+    /// What a robot says of its levels and needs, when it read these levels.
+    fn said(&mut self, robot: &Robot, read: [f64; 2], now: &Now<'_>) -> ([f64; 2], BTreeMap<usize, f64>) {
+        let (mut levels, mut needs) = (read, BTreeMap::new());
+        let Some(rules) = &now.model.telemetry else { return (levels, needs) };
+        let mut told = std::mem::take(&mut self.told[robot.id.index()]);
+        for told in &mut told {
+            let lie = &rules.lies[told.lie as usize];
+            if !lie.lie.is_about_levels() || !lie.is_told_at(now.time_s()) {
+                continue;
+            }
+            let honest = robot.with_levels(read).needs(&now.model.needs);
+            let honest = honest.map(|needs| needs.values().to_vec()).unwrap_or_default();
+            let fresh = robot.fresh_needs(&now.model.needs);
+            let of_fresh =
+                |need: NeedId| 100.0 * honest[need.index()] / fresh[need.index()].max(f64::MIN_POSITIVE);
+            let topics: Vec<f64> =
+                read.into_iter().chain(lie.on_needs.iter().map(|need| of_fresh(*need))).collect();
+            if told.at_onset.is_empty() {
+                told.at_onset.clone_from(&topics);
+            }
+            let topic = |place: usize, number: usize, others: Option<f64>| Topic {
+                seed: rules.seed,
+                of: u64::from(robot.id.0) * TOPICS + number as u64,
+                step: now.step,
+                time_s: now.time_s(),
+                at_onset: told.at_onset[place],
+                others,
+            };
+            for level in (0..2).filter(|level| lie.on_levels[*level]) {
+                let others = self.heard.mean_of_others(robot, now.team, level);
+                levels[level] = lie.said(read[level], &topic(level, level, others), 100.0);
+            }
+            let most = if rules.clip { 100.0 } else { f64::MAX };
+            for (place, need) in lie.on_needs.iter().enumerate() {
+                let said = lie.said(topics[2 + place], &topic(2 + place, 2 + need.index(), None), most);
+                needs.insert(need.index(), (said * fresh[need.index()] / 100.0).min(1e12));
+            }
+        }
+        self.told[robot.id.index()] = told;
+        (levels, needs)
+    }
+}
