@@ -142,8 +142,8 @@ impl Evidence {
 
     /// How far the base believes what each robot said of the energy that it spent, round by round: 1 if it is
     /// what its group-mates spent (the median of those that came back with their group), 0 from
-    /// [`DOUBTED_POINTS`] away on. A round in which a robot rested says nothing; one in which it turned back or
-    /// was lost only if it had said that it was far from tired.
+    /// [`DOUBTED_POINTS`] away on. A round in which a robot rested says nothing; one in which it turned back
+    /// or was lost says something only if it had said that it was far from tired.
     #[must_use]
     pub fn energy_outcomes(&self, history: &[RoundOutcome]) -> Vec<EnergyOutcome> {
         let mut outcomes = Vec::new();
@@ -220,8 +220,8 @@ impl Rating {
         1.0 - ((self.speed_mps - self.said_mps).abs() / (tolerance * top_mps)).min(1.0)
     }
 
-    /// The health level that the speed seen speaks for, in percent: a robot of this top speed at full health is
-    /// as slow as `floor` times it at 0 %. `None` if health does not slow robots.
+    /// The health level that the speed seen speaks for, in percent: a robot of this top speed at full health
+    /// is as slow as `floor` times it at 0 %. `None` if health does not slow robots.
     #[must_use]
     pub fn measured_hp(&self, top_mps: f64, floor: f64) -> Option<f64> {
         let level = 100.0 * (self.speed_mps / top_mps - floor) / (1.0 - floor);

@@ -78,9 +78,8 @@ impl Crew {
 
     /// Where a robot is in the mission, for telemetry.
     pub(crate) fn presence(&self, model: &Model, robot: &Robot) -> Presence {
-        let Agent { activity, task, .. } = &self.agents[robot.id.index()];
+        let activity = &self.agents[robot.id.index()].activity;
         Presence {
-            task: *task,
             is_home: *activity == Activity::Home,
             is_in_field: activity.is_in_field(),
             is_resting: matches!(activity, Activity::Resting(_)),

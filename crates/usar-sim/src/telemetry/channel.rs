@@ -59,8 +59,8 @@ impl Channel {
         &self.links
     }
 
-    /// Sends a message. Returns when it is heard, in seconds; `None` if it is lost. A lost message occupies the
-    /// channel, too. Every message has draws of its own, whether they are used or not.
+    /// Sends a message. Returns when it is heard, in seconds; `None` if it is lost. A lost message occupies
+    /// the channel, too. Every message has draws of its own, whether they are used or not.
     pub fn send(&mut self, medium: &MediumModel, sending: Sending) -> Option<f64> {
         let Sending { seed, from, at, time_s } = sending;
         let link = &mut self.links[from];
@@ -170,7 +170,8 @@ mod tests {
         }
     }
 
-    /// Shares that arrive, computed independently: 0.7733726 at 10 m behind a wall, 0.5117398 at 30 m, 1 nearby.
+    /// Shares that arrive, computed independently: 0.7733726 at 10 m behind a wall, 0.5117398 at 30 m, and 1
+    /// nearby.
     #[test]
     fn a_path_loses_by_distance_and_walls_as_computed_elsewhere() {
         let path = PathLoss { budget_db: 80.0, pl0_db: 40.0, n: 2.7, wall_db: 10.0, sigma_db: 4.0 };

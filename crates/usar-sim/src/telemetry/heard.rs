@@ -32,6 +32,8 @@ pub struct Heard {
 /// What was said of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Said {
+    /// When it was sent, in seconds.
+    sent_s: f64,
     levels: [f64; 2],
     needs: BTreeMap<usize, f64>,
 }
@@ -49,16 +51,21 @@ impl Heard {
         }
     }
 
+    /// Hears what was said of a robot. What was sent before the last that was heard is evidence only.
     pub(super) fn hear_levels(&mut self, report: LevelReport) {
-        let said = Said { levels: [report.energy_level, report.hp_level], needs: report.needs.clone() };
+        let levels = [report.energy_level, report.hp_level];
+        let said = Said { sent_s: report.sent_s, levels, needs: report.needs.clone() };
         let of = report.of as usize;
+        self.evidence.reports.push(report);
         if let Some(before) = &self.last[of] {
+            if said.sent_s < before.sent_s {
+                return;
+            }
             for ((spent, before), now) in self.spent[of].iter_mut().zip(before.levels).zip(said.levels) {
                 *spent += (before - now).max(0.0);
             }
         }
         self.last[of] = Some(said);
-        self.evidence.reports.push(report);
     }
 
     pub(super) fn hear_rating(&mut self, rating: Rating) {
@@ -81,11 +88,6 @@ impl Heard {
     /// The needs of a robot as they were said by themselves.
     pub(super) fn said_needs(&self, robot: RobotId) -> Option<&BTreeMap<usize, f64>> {
         self.last[robot.index()].as_ref().map(|said| &said.needs)
-    }
-
-    /// The rounds that are over, without robots that have taken a new name since.
-    pub(super) fn history_as_of(&self, known_since: &BTreeMap<u32, u32>) -> Vec<RoundOutcome> {
-        named(&self.history, known_since)
     }
 
     pub(super) fn begin_round(&mut self) {
@@ -138,4 +140,32 @@ pub struct Trip {
     pub(super) back_s: Option<f64>,
     /// Whether it rested.
     pub(super) rested: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_sent_earlier_and_is_heard_later_is_evidence_only() {
+        let report = |sent_s: f64, energy_level: f64| LevelReport {
+            of: 0,
+            by: 0,
+            round: 1,
+            sent_s,
+            heard_s: sent_s,
+            energy_level,
+            hp_level: 90.0,
+            needs: BTreeMap::new(),
+            sd: [0.0; 2],
+        };
+        let mut heard = Heard::nothing(1, 30.0);
+        for (sent_s, energy_level) in [(10.0, 80.0), (30.0, 60.0), (20.0, 70.0)] {
+            heard.hear_levels(report(sent_s, energy_level));
+        }
+        assert_eq!(heard.levels(RobotId(0), [0.0; 2]).map(f64::to_bits), [60.0, 90.0].map(f64::to_bits));
+        assert_eq!((heard.evidence.reports.len(), heard.spent[0][0].to_bits()), (3, 20.0_f64.to_bits()));
+        heard.hear_levels(report(30.0, 50.0)); // under another's name: after the true one
+        assert_eq!(heard.levels(RobotId(0), [0.0; 2])[0].to_bits(), 50.0_f64.to_bits());
+    }
 }

@@ -1,7 +1,8 @@
 //! Telemetry: what robots say of themselves and of their mates, and what the base hears of it.
 //!
-//! Truth, fault, gauge, lie, medium, base: each stage is a file. Where a scenario has no reports, no medium and
-//! no deceit, there is no telemetry, and the base knows how every robot is.
+//! A robot reads its gauges (`gauge`), says something of them (`speech`, `lie`) and looks at its mates
+//! (`witness`); messages go through a channel (`channel`) to the base (`heard`). Where a scenario has no
+//! reports, no medium and no deceit, there is no telemetry, and the base knows how every robot is.
 
 mod channel;
 mod gauge;
@@ -10,7 +11,7 @@ mod lie;
 mod speech;
 mod witness;
 
-use rne_core::{Evidence, LevelReport, Member, NeedVector, Rating, RoundOutcome, TaskId};
+use rne_core::{Evidence, LevelReport, Member, NeedVector, Rating, RoundOutcome};
 use serde::{Deserialize, Serialize};
 
 pub use channel::{Channel, Link};
@@ -66,8 +67,6 @@ enum Says {
 /// Where a robot is in the mission.
 #[derive(Debug, Clone, Copy)]
 pub struct Presence {
-    /// The task of its group.
-    pub task: Option<TaskId>,
     /// Whether it is at home.
     pub is_home: bool,
     /// Whether it works in the field.
@@ -235,7 +234,7 @@ impl Telemetry {
     /// The rounds as the base heard of them, as far as their robots still have their names.
     #[must_use]
     pub(crate) fn history(&self) -> Vec<RoundOutcome> {
-        self.heard.history_as_of(&self.heard.known_since)
+        named(&self.heard.history, &self.heard.known_since)
     }
 
     fn look(&mut self, now: &Now<'_>, rules: &TelemetryModel) {
@@ -297,16 +296,10 @@ impl Telemetry {
 
     /// Lets the base hear the messages that have arrived by now.
     fn deliver(&mut self, time_s: f64, log: &mut EventLog) {
-        let mut messages = std::mem::take(&mut self.under_way);
+        let messages = std::mem::take(&mut self.under_way);
         let has_arrived = |message: &Message| message.heard_s <= time_s;
-        if !messages.iter().any(has_arrived) {
-            self.under_way = messages;
-            return;
-        }
-        let mut arrived: Vec<Message> =
-            messages.iter().filter(|message| has_arrived(message)).cloned().collect();
-        messages.retain(|message| !has_arrived(message));
-        self.under_way = messages;
+        let (mut arrived, others): (Vec<Message>, Vec<Message>) = messages.into_iter().partition(has_arrived);
+        self.under_way = others;
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
         for Message { heard_s, by, sent_s, says } in arrived {
             if heard_s > sent_s {
