@@ -272,6 +272,7 @@ impl RobotState {
     pub(crate) fn of(simulation: &Simulation, id: usize) -> Self {
         let (robot, agent) = (&simulation.world().robots[id], &simulation.mission().crew.agents[id]);
         let delay = simulation.delay(robot.id);
+        let exists = |rescuee: &u32| (*rescuee as usize) < simulation.world().rescuees.len();
         let (activity, until) = match agent.activity {
             Activity::Home => (0, None),
             Activity::Searching => (1, None),
@@ -285,7 +286,7 @@ impl RobotState {
         };
         Self {
             activity,
-            rescuee: agent.activity.claim().map(|rescuee| rescuee.0),
+            rescuee: agent.activity.claim().map(|rescuee| rescuee.0).filter(exists),
             until_step: until.map(|step| step as u32),
             delay: delay.cause as u8,
             waits_for: delay.waits_for.map(|other| other.0),

@@ -111,6 +111,10 @@ fn set(robots: &[RobotId]) -> String {
     robots_in_words(&robots.iter().map(|robot| robot.0).collect::<Vec<_>>())
 }
 
+fn listener(to: Option<RobotId>) -> String {
+    to.map_or_else(|| "the base".to_owned(), |robot| format!("robot {robot}"))
+}
+
 /// An event in a sentence without its time and without a full stop.
 fn sentence(event: &Event, names: Names) -> String {
     let task = |task: usize| names.task(task);
@@ -175,8 +179,10 @@ fn sentence(event: &Event, names: Names) -> String {
         }
         Event::TaskBegan { task: number } => format!("task {} begins", task(number.index())),
         Event::TaskEnded { task: number } => format!("task {} ends", task(number.index())),
-        Event::Heard { robot, sent_s } => format!("the base hears what robot {robot} sent at {sent_s:.2} s"),
-        Event::Lost { robot } => format!("a message of robot {robot} is lost"),
+        Event::Heard { robot, to, sent_s } => {
+            format!("{} hears what robot {robot} sent at {sent_s:.2} s", listener(*to))
+        }
+        Event::Lost { robot, to } => format!("a message of robot {robot} to {} is lost", listener(*to)),
         Event::BeganToLie { robot } => format!("robot {robot} begins to lie"),
         Event::BecameHonest { robot } => format!("robot {robot} tells no more lies"),
         Event::Slowed { robot, factor } => {

@@ -285,17 +285,21 @@ pub enum Event {
     /// No round can begin, no event is to come, and every robot that can act is at home or cut off: the trial
     /// ends.
     Standstill,
-    /// The base heard a message that came over the medium.
+    /// A message that came over the medium was heard.
     Heard {
         /// The sender.
         robot: RobotId,
+        /// Who heard it; the base if it is no robot.
+        to: Option<RobotId>,
         /// When it was sent, in seconds.
         sent_s: f64,
     },
-    /// A message to the base was lost.
+    /// A message was lost.
     Lost {
         /// The sender.
         robot: RobotId,
+        /// Who was to hear it; the base if it is no robot.
+        to: Option<RobotId>,
     },
     /// A robot began to lie by an event of the scenario.
     BeganToLie {

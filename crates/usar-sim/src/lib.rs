@@ -27,7 +27,6 @@ pub mod ids;
 pub mod intent;
 pub mod invariant;
 pub mod limits;
-pub mod medium;
 pub mod metrics;
 pub mod mission;
 pub mod model;

@@ -10,7 +10,7 @@ use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
 use crate::model::Model;
 use crate::robot::{Condition, Robot};
 use crate::tally::Tally;
-use crate::telemetry::{Heard, Link, Telemetry, named};
+use crate::telemetry::{Ends, Heard, Link, Telemetry, named};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -137,7 +137,7 @@ pub struct HeardRecord {
     pub evidence: Evidence,
     /// How much of the evidence each question had.
     pub extents: Vec<Extent>,
-    /// The link of each robot to the base.
+    /// The links on which anything was sent.
     pub links: Vec<LinkRecord>,
 }
 
@@ -158,11 +158,13 @@ pub(crate) fn whole_question(
     Question { history, evidence: Some(heard.evidence.as_of(extent)), ..asked.clone() }
 }
 
-/// The link of a robot to the base in a trial.
+/// A link in a trial: from a robot to the base or to a group-mate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LinkRecord {
-    /// The robot.
-    pub robot: u32,
+    /// The sender.
+    pub from: u32,
+    /// Who was to hear it; absent for the base.
+    pub to: Option<u32>,
     /// Messages over the medium.
     pub sent: u64,
     /// Those that were heard.
@@ -174,8 +176,9 @@ pub struct LinkRecord {
 impl HeardRecord {
     pub(crate) fn of(telemetry: &Telemetry) -> Self {
         let Heard { history, evidence, extents, .. } = telemetry.heard();
-        let link = |(robot, link): (u32, &Link)| LinkRecord {
-            robot,
+        let link = |(ends, link): (&Ends, &Link)| LinkRecord {
+            from: ends.from.0,
+            to: ends.to.map(|to| to.0),
             sent: link.sent,
             heard: link.sent - link.lost,
             delay_s: link.mean_delay_s(),
@@ -184,7 +187,7 @@ impl HeardRecord {
             history: history.clone(),
             evidence: evidence.clone(),
             extents: extents.clone(),
-            links: (0..).zip(telemetry.links()).map(link).collect(),
+            links: telemetry.links().map(link).collect(),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Reports: who says what about which thing, as of when, and how sure.
 //!
-//! Sensors make reports, a [medium](crate::medium) carries them, and a [belief](crate::belief) is a fold over
-//! the reports that were heard. A report may be late, missing or false.
+//! Sensors make reports, and a [belief](crate::belief) is a fold over those that were heard, at once or by
+//! [radio](crate::telemetry). A report may be late, missing or false.
 
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;

@@ -34,6 +34,8 @@ pub enum Purpose {
     Witness,
     /// The fate of a message, by link and number.
     Message,
+    /// The place of a rescuee that a robot makes up, by robot and number.
+    Phantom,
 }
 
 impl Purpose {
@@ -52,6 +54,7 @@ impl Purpose {
             Self::Lie => 10,
             Self::Witness => 11,
             Self::Message => 12,
+            Self::Phantom => 13,
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The beliefs of a team, and which robots share which: by the scenario's rule, those of a group, or each
-//! robot in the field has its own. Robots without a group share the belief of the team at home. What a robot
+//! robot in the field has its own and may hear from its mates. Robots without a group share the belief of the team at home. What a robot
 //! says of itself, the whole team knows.
 
 use rne_core::TaskId;
@@ -23,7 +23,7 @@ impl BeliefSharing {
     pub(crate) fn holders(self, tasks: usize, robots: usize) -> usize {
         match self {
             Self::WithGroup => tasks,
-            Self::WithNobody => robots,
+            Self::WithNobody | Self::ByRadio => robots,
         }
     }
 
@@ -32,14 +32,14 @@ impl BeliefSharing {
     pub fn holder(self, robot: RobotId, task: TaskId) -> Holder {
         match self {
             Self::WithGroup => Holder(u32::from(task.0)),
-            Self::WithNobody => Holder(robot.0),
+            Self::WithNobody | Self::ByRadio => Holder(robot.0),
         }
     }
 
     /// The beliefs of these members of the group of a task, each once. A group has one without members, too.
     pub(crate) fn holders_in(self, task: TaskId, members: &[RobotId]) -> impl Iterator<Item = Holder> {
         let of_group = (self == Self::WithGroup).then_some(Holder(u32::from(task.0)));
-        let own = members.iter().filter(move |_| self == Self::WithNobody);
+        let own = members.iter().filter(move |_| self != Self::WithGroup);
         of_group.into_iter().chain(own.map(|robot| Holder(robot.0)))
     }
 }
@@ -101,6 +101,11 @@ impl Beliefs {
                 self.home.hear(report)
             }
         }
+    }
+
+    /// Lets a report be heard by those who share one belief in the field.
+    pub(crate) fn hear_in_field(&mut self, holder: Holder, report: &Report) {
+        self.field[holder.0 as usize].hear(report);
     }
 
     /// The beliefs as they count in the hash chain.

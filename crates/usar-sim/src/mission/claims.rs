@@ -147,6 +147,7 @@ impl Claims {
         let waiting = move |i: usize| {
             Some(Offer { holder, rescuee: RescueeId(i as u32), at: believed.get(i)?.waits_at? })
         };
-        scene.model.tasks[task.index()].rescuees.clone().filter(is_free).filter_map(waiting)
+        let own = scene.model.tasks[task.index()].rescuees.clone();
+        own.chain(scene.model.phantoms_of(task)).filter(is_free).filter_map(waiting)
     }
 }

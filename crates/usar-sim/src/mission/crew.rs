@@ -55,6 +55,11 @@ impl Crew {
         self.agents[robot.index()].task
     }
 
+    /// The members of a robot's group, itself among them.
+    pub(crate) fn mates_of(&self, robot: RobotId) -> &[RobotId] {
+        self.group_of(robot).map_or(&[], |task| &self.groups[task.index()].members)
+    }
+
     /// The belief on which a robot acts; none for the belief of the team at home.
     #[must_use]
     pub(crate) fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {

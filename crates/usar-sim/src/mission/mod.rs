@@ -74,7 +74,7 @@ impl Mission {
     /// A mission in which all robots are at home, or on their errands.
     #[must_use]
     pub fn new(model: &Model) -> Self {
-        let (crew, claims) = (Crew::new(model), Claims::nothing(model.rescuees.len()));
+        let (crew, claims) = (Crew::new(model), Claims::nothing(model.rescuee_numbers()));
         Self { crew, claims, round: 0, ending: None, pending: None }
     }
 
@@ -191,8 +191,8 @@ impl Mission {
             let sharing = scene.model.mission.belief_sharing;
             let knows = |id: RobotId| {
                 let holder = sharing.holder(id, task);
-                let can_carry = scene.beliefs.team[id.index()].can_carry();
-                can_carry && self.claims.on_offer(task, holder, scene).next().is_some()
+                let has_room = scene.beliefs.team[id.index()].free_capacity() > 0;
+                has_room && self.claims.on_offer(task, holder, scene).next().is_some()
             };
             field.known_rescuees = u32::from(self.crew.in_field(task, &scene.beliefs.team).any(knows));
         }

@@ -17,11 +17,17 @@ impl Mission {
         let Some(task) = agent.task.filter(|_| robot.is_able()) else { return };
         let is_held_up = activity.is_in_field() && self.crew.is_held_up(robot, scene.model);
         match activity {
-            Activity::Approaching(rescuee) => {
-                if is_held_up || is_out_of_reach(id, scene.place_of(id, task, rescuee), scene) {
+            Activity::Approaching(rescuee) => match scene.place_of(id, task, rescuee) {
+                Some(at) if is_held_up || is_out_of_reach(id, at, scene) => {
                     self.give_up(id, task, rescuee, scene);
                 }
-            }
+                Some(_) => {}
+                None => {
+                    // A mate has said since that it is gone.
+                    self.release_claim(id);
+                    self.crew.agent(id).activity = Activity::Searching;
+                }
+            },
             Activity::Searching | Activity::Standby => match claim {
                 _ if !self.crew.groups[task.index()].at_work => {}
                 Some(rescuee) => {
@@ -80,10 +86,10 @@ impl Mission {
 
 /// Whether a robot has no route to a rescuee, or has reached the end of its route out of reach of the
 /// rescuee.
-fn is_out_of_reach(id: RobotId, rescuee_at: Option<Vector>, scene: &Scene) -> bool {
+fn is_out_of_reach(id: RobotId, rescuee_at: Vector, scene: &Scene) -> bool {
     let traveller = scene.navigator.traveller(id);
     let robot = &scene.beliefs.team[id.index()];
     let reach = scene.model.mission.reach;
-    let is_far = || rescuee_at.is_none_or(|at| (at - robot.position).length() > reach);
+    let is_far = || (rescuee_at - robot.position).length() > reach;
     traveller.has_arrived(robot.position) && is_far() || traveller.leads_nowhere()
 }

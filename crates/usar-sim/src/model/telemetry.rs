@@ -40,6 +40,8 @@ pub struct TelemetryModel {
     pub told_by: Vec<Vec<usize>>,
     /// For each robot, whether it tells a lie in this trial, sooner or later.
     pub is_liar: Vec<bool>,
+    /// Whether any lie makes up rescuees.
+    pub has_phantoms: bool,
     /// The levels that a robot counts with that was never heard, in percent.
     pub mean_levels: [f64; 2],
 }
@@ -134,7 +136,9 @@ impl TelemetryModel {
             }
         }
         let levels = scenario.initial_levels;
+        let lies = lies(scenario);
         Some(Self {
+            has_phantoms: lies.iter().any(|lie| matches!(lie.lie, Lie::PhantomRescuee { .. })),
             seed,
             every_steps: ((rules.every_s / scenario.dt_s).round() as u64).max(1),
             gauges: scenario.roles.iter().map(|role| gauges(&role.name)).collect(),
@@ -143,7 +147,7 @@ impl TelemetryModel {
             priority: rules.priority,
             clip: rules.clip,
             medium: scenario.medium.as_ref().map(|rules| MediumModel::compile(rules, layout, robots)),
-            lies: lies(scenario),
+            lies,
             told_by,
             is_liar,
             mean_levels: [levels.energy.mean, levels.hp.mean],

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checker::{Checker, meant, shown};
 use super::file::{Happening, ScenarioFile};
+use super::rules::BeliefSharing;
 use crate::limits;
 
 /// A lie and who tells it.
@@ -126,6 +127,14 @@ pub enum Lie {
         #[serde(rename = "as")]
         name: u32,
     },
+    /// Does not tell its group-mates of radiation that it noticed.
+    HideRadiation,
+    /// Tells its group-mates of a rescuee that does not exist, somewhere among those of their task, again and
+    /// again.
+    PhantomRescuee {
+        /// Time between two of them, in seconds.
+        every_s: f64,
+    },
 }
 
 /// Some of a robot's mates.
@@ -150,6 +159,10 @@ enum Subject {
     Name,
     /// Under which other name it reports.
     OtherName,
+    /// What it tells its mates of radiation.
+    Radiation,
+    /// What it tells its mates of rescuees.
+    Rescuees,
 }
 
 impl Lie {
@@ -161,6 +174,11 @@ impl Lie {
     /// Whether it is about what the liar saw of its mates.
     pub(crate) fn is_about_mates(&self) -> bool {
         self.subject() == Some(Subject::Mates)
+    }
+
+    /// Whether it is about things in the field.
+    fn is_about_the_field(&self) -> bool {
+        matches!(self.subject(), Some(Subject::Radiation | Subject::Rescuees))
     }
 
     /// What it changes, if that is no level.
@@ -180,6 +198,8 @@ impl Lie {
             }
             Self::Whitewash { .. } => Some(Subject::Name),
             Self::Impersonate { .. } => Some(Subject::OtherName),
+            Self::HideRadiation => Some(Subject::Radiation),
+            Self::PhantomRescuee { .. } => Some(Subject::Rescuees),
         }
     }
 
@@ -221,6 +241,10 @@ pub(super) fn deceit(check: &mut Checker, file: &ScenarioFile) {
 /// Checks a lie of the timeline.
 pub(super) fn told(check: &mut Checker, field: &str, lie: &Lie, on: &[Channel], file: &ScenarioFile) {
     values(check, &format!("{field}.lie"), lie, file);
+    if lie.is_about_the_field() && file.mission.belief_sharing != BeliefSharing::ByRadio {
+        let rule = "needs mission.belief_sharing: ByRadio, as mates are told nothing otherwise";
+        check.fail(format!("{field}.lie"), rule, format!("{:?}", file.mission.belief_sharing));
+    }
     if lie.is_about_levels() && on.is_empty() {
         check.fail(
             format!("{field}.on"),
@@ -319,6 +343,9 @@ fn values(check: &mut Checker, field: &str, lie: &Lie, file: &ScenarioFile) {
                 );
             }
         }
+        Lie::PhantomRescuee { every_s } => {
+            check.number(format!("{field}.every_s"), *every_s, limits::LIE_PERIOD_S);
+        }
         Lie::Impersonate { name } => {
             if *name >= robots {
                 check.fail(
@@ -335,7 +362,8 @@ fn values(check: &mut Checker, field: &str, lie: &Lie, file: &ScenarioFile) {
         | Lie::BallotStuff { .. }
         | Lie::Flip
         | Lie::Silent
-        | Lie::Collude => {}
+        | Lie::Collude
+        | Lie::HideRadiation => {}
     }
 }
 

@@ -140,6 +140,9 @@ pub enum BeliefSharing {
     WithGroup,
     /// Nobody: each robot acts on what it has seen itself.
     WithNobody,
+    /// Its group-mates hear of it by the scenario's medium, late or never, and each robot acts on what it has
+    /// seen and heard itself.
+    ByRadio,
 }
 
 /// Rules of the mission.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checker::{Checker, meant, shown};
 use super::file::{Point, ScenarioFile};
+use super::rules::BeliefSharing;
 use crate::limits;
 
 /// How robots report their levels, and who goes by the reports. Without this section, without a medium and
@@ -93,8 +94,8 @@ impl Default for Witness {
     }
 }
 
-/// The medium between robots and the base: which messages are heard, and when. Without this section all are
-/// heard at once.
+/// The medium between robots and the base, and between group-mates where `mission.belief_sharing` is `ByRadio`:
+/// which messages are heard, and when. Without this section all are heard at once.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MediumRules {
@@ -202,6 +203,8 @@ pub(super) fn telemetry(check: &mut Checker, file: &ScenarioFile) {
     }
     if let Some(rules) = &file.medium {
         medium(check, rules);
+    } else if file.mission.belief_sharing == BeliefSharing::ByRadio {
+        check.fail("mission.belief_sharing", "must not be ByRadio without a medium", "ByRadio");
     }
 }
 

@@ -8,6 +8,7 @@ mod charge;
 mod checkpoint;
 mod faults;
 mod moments;
+mod radio;
 mod rescue;
 mod setup;
 mod state;
@@ -320,6 +321,7 @@ impl Simulation {
         state.sense(model, &mut self.scratch.heard);
         if state.telemetry.is_some() {
             state.report(model);
+            state.make_up_rescuees(model);
         }
         done(Stage::Sense);
         state.prepare(model);

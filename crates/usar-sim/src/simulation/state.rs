@@ -13,7 +13,6 @@ use crate::belief::Beliefs;
 use crate::conflict::{self, Delay, MANY_ROBOTS, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{ABSENT, HashChain, PARTS, part};
-use crate::medium;
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
 use crate::model::Model;
@@ -157,7 +156,7 @@ impl State {
         events.len()
     }
 
-    /// Robots look around and report; the medium carries; the groups and the team at home hear.
+    /// Robots look around and report; the groups and the team at home hear.
     pub(super) fn sense(&mut self, model: &Model, heard: &mut Vec<Report>) {
         let Self { world, mission, beliefs, sent, step, .. } = self;
         look_around(world, model, |robot| beliefs.of(mission.crew.holder_of(robot.id, model)), *step, sent);
@@ -170,10 +169,13 @@ impl State {
         self.hear(model, heard);
     }
 
-    /// The medium carries the reports that are under way; the groups and the team hear them.
+    /// The reports that were sent are heard: by those who share the belief of their sender, and by its mates
+    /// when the radio brings them.
     pub(super) fn hear(&mut self, model: &Model, heard: &mut Vec<Report>) {
-        let Self { mission, beliefs, sent, log, step, .. } = self;
-        medium::carry(model, *step, sent, heard);
+        heard.append(&mut self.sent);
+        self.tell_mates(heard, model);
+        self.hear_mates(model);
+        let Self { mission, beliefs, log, .. } = self;
         for report in heard.drain(..) {
             match report {
                 Report { from: Speaker::Robot(id), says: Statement::IAm(robot), at_step, .. } => {

@@ -1,4 +1,6 @@
-//! The channel between robots and the base: which messages are heard, and when.
+//! The channel that all robots and the base share: which messages are heard, and when.
+
+use std::collections::BTreeMap;
 
 use parry2d::math::Vector;
 use parry2d::query::Ray;
@@ -7,20 +9,30 @@ use rand::rngs::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Outline;
+use crate::ids::RobotId;
 use crate::model::MediumModel;
 use crate::scenario::{Loss, PathLoss};
 use crate::seed::{Purpose, normal, stream_at};
 
-/// The state of the channel, and what became of the messages of each robot.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+/// The state of the channel, and what became of the messages on each link.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Channel {
     /// From when on the channel is free, in seconds.
     free_from_s: f64,
-    /// The link of each robot to the base.
-    links: Vec<Link>,
+    /// The links on which anything was sent.
+    links: BTreeMap<Ends, Link>,
 }
 
-/// The link of a robot to the base.
+/// The two ends of a link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Ends {
+    /// The sender.
+    pub from: RobotId,
+    /// Who is to hear it; the base if it is no robot.
+    pub to: Option<RobotId>,
+}
+
+/// What became of the messages on a link.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Link {
     /// Messages that were sent.
@@ -38,39 +50,34 @@ pub struct Link {
 pub struct Sending {
     /// Seed of the trial.
     pub seed: u64,
-    /// Number of the sender.
-    pub from: usize,
+    /// From whom and to whom.
+    pub ends: Ends,
     /// Where the sender is, in metres.
     pub at: Vector,
+    /// Where the other end is, in metres.
+    pub to: Vector,
     /// The time, in seconds.
     pub time_s: f64,
 }
 
 impl Channel {
-    /// A free channel, with all links in their good state.
-    #[must_use]
-    pub fn new(robots: usize) -> Self {
-        Self { free_from_s: 0.0, links: vec![Link::default(); robots] }
-    }
-
-    /// The links, by robot.
-    #[must_use]
-    pub fn links(&self) -> &[Link] {
-        &self.links
+    /// The links on which anything was sent, by their ends.
+    pub fn links(&self) -> impl Iterator<Item = (&Ends, &Link)> {
+        self.links.iter()
     }
 
     /// Sends a message. Returns when it is heard, in seconds; `None` if it is lost. A lost message occupies
     /// the channel, too. Every message has draws of its own, whether they are used or not.
     pub fn send(&mut self, medium: &MediumModel, sending: Sending) -> Option<f64> {
-        let Sending { seed, from, at, time_s } = sending;
-        let link = &mut self.links[from];
-        let mut draws = stream_at(seed, Purpose::Message, from as u64, link.sent);
+        let Sending { seed, ends, at, to, time_s } = sending;
+        let link = self.links.entry(ends).or_default();
+        let mut draws = stream_at(seed, Purpose::Message, ends.number(), link.sent);
         let (shadow, loss) = (normal(&mut draws, 0.0, 1.0), draws.random::<f64>());
         link.sent += 1;
         let is_lost = link.loses(medium.loss, loss, &mut draws)
-            | (at - medium.base).length().gt(&medium.range)
-            | medium.path.is_some_and(|path| shadow > margin(&path, at, medium))
-            | medium.is_blacked_out(at, time_s);
+            | (at - to).length().gt(&medium.range)
+            | medium.path.is_some_and(|path| shadow > margin(&path, [at, to], &medium.walls))
+            | medium.is_blacked_out([at, to], time_s);
         let sent_s = self.free_from_s.max(time_s) + medium.air_s;
         if medium.air_s > 0.0 {
             self.free_from_s = sent_s;
@@ -82,6 +89,13 @@ impl Channel {
             link.delay_s += heard_s - time_s;
         }
         (!is_lost).then_some(heard_s)
+    }
+}
+
+impl Ends {
+    /// The number of the link in streams of random numbers.
+    fn number(self) -> u64 {
+        u64::from(self.from.0) | self.to.map_or(0, |to| (u64::from(to.0) + 1) << 32)
     }
 }
 
@@ -104,19 +118,19 @@ impl Link {
 }
 
 impl MediumModel {
-    fn is_blacked_out(&self, at: Vector, time_s: f64) -> bool {
+    fn is_blacked_out(&self, ends: [Vector; 2], time_s: f64) -> bool {
         self.blackouts.iter().any(|blackout| {
-            let is_in = |place: Vector| (place - blackout.at).length() <= blackout.radius;
-            blackout.window_s[0] <= time_s && time_s < blackout.window_s[1] && (is_in(at) || is_in(self.base))
+            let is_in = |place: &Vector| (*place - blackout.at).length() <= blackout.radius;
+            blackout.window_s[0] <= time_s && time_s < blackout.window_s[1] && ends.iter().any(is_in)
         })
     }
 }
 
-/// By how many standard deviations of the shadowing the loss of the path from a place to the base is within
-/// the budget.
-fn margin(path: &PathLoss, at: Vector, medium: &MediumModel) -> f64 {
-    let distance = f64::from((at - medium.base).length());
-    let walls = medium.walls.iter().filter(|wall| is_between(wall, at, medium.base)).count();
+/// By how many standard deviations of the shadowing the loss of the path between two places is within the
+/// budget.
+fn margin(path: &PathLoss, [at, to]: [Vector; 2], walls: &[Outline]) -> f64 {
+    let distance = f64::from((at - to).length());
+    let walls = walls.iter().filter(|wall| is_between(wall, at, to)).count();
     let loss = path.pl0_db + 10.0 * path.n * libm::log10(distance.max(1.0)) + walls as f64 * path.wall_db;
     (path.budget_db - loss) / path.sigma_db
 }
@@ -146,10 +160,16 @@ mod tests {
         }
     }
 
+    /// A message of a robot to the base.
+    fn sending(seed: u64, robot: u32, at: Vector, time_s: f64) -> Sending {
+        let ends = Ends { from: RobotId(robot), to: None };
+        Sending { seed, ends, at, to: Vector::ZERO, time_s }
+    }
+
     /// Whether each of so many messages from a place, a second apart, is lost.
     fn losses(medium: &MediumModel, at: Vector, count: u32) -> Vec<bool> {
-        let mut channel = Channel::new(1);
-        let mut send = |i| channel.send(medium, Sending { seed: 5, from: 0, at, time_s: f64::from(i) });
+        let mut channel = Channel::default();
+        let mut send = |i| channel.send(medium, sending(5, 0, at, f64::from(i)));
         (0..count).map(|i| send(i).is_none()).collect()
     }
 
@@ -190,11 +210,12 @@ mod tests {
     #[test]
     fn messages_wait_for_one_another_and_are_delayed() {
         let medium = MediumModel { air_s: 0.012_24, delay_s: 0.2, ..medium() };
-        let mut channel = Channel::new(2);
-        let mut send = |from| channel.send(&medium, Sending { seed: 1, from, at: Vector::ZERO, time_s: 1.0 });
+        let mut channel = Channel::default();
+        let mut send = |robot| channel.send(&medium, sending(1, robot, Vector::ZERO, 1.0));
         let heard = [send(0), send(1)].map(Option::unwrap);
         assert!((heard[0] - 1.212_24).abs() < 1e-12 && (heard[1] - 1.224_48).abs() < 1e-12, "{heard:?}");
-        assert!((channel.links()[1].mean_delay_s().unwrap() - 0.224_48).abs() < 1e-12);
+        let (_, last) = channel.links().last().unwrap();
+        assert!((last.mean_delay_s().unwrap() - 0.224_48).abs() < 1e-12);
     }
 
     #[test]

@@ -87,7 +87,9 @@ fn turned(lie: &Lie, x: f64, topic: &Topic, since_s: f64) -> Option<f64> {
         | Lie::Silent
         | Lie::Collude
         | Lie::Whitewash { .. }
-        | Lie::Impersonate { .. } => return None,
+        | Lie::Impersonate { .. }
+        | Lie::HideRadiation
+        | Lie::PhantomRescuee { .. } => return None,
     })
 }
 
@@ -125,7 +127,9 @@ pub fn said_of_mate(lie: &Lie, rating: Rating, top_mps: f64, rules: &TelemetryMo
         | Lie::Copycat
         | Lie::OnOff { .. }
         | Lie::Whitewash { .. }
-        | Lie::Impersonate { .. } => rating,
+        | Lie::Impersonate { .. }
+        | Lie::HideRadiation
+        | Lie::PhantomRescuee { .. } => rating,
     })
 }
 

@@ -1,20 +1,22 @@
 //! Telemetry: what robots say of themselves and of their mates, and what the base hears of it.
 //!
 //! A robot reads its gauges (`gauge`), says something of them (`speech`, `lie`) and looks at its mates
-//! (`witness`); messages go through a channel (`channel`) to the base (`heard`). Where a scenario has no
-//! reports, no medium and no deceit, there is no telemetry, and the base knows how every robot is.
+//! (`witness`); messages go through a channel (`channel`) to the base (`heard`). By the same channel robots
+//! tell their mates of debris, radiation and rescuees where the scenario says so (`radio`). Where a scenario
+//! has no reports, no medium and no deceit, there is no telemetry, and the base knows how every robot is.
 
 mod channel;
 mod gauge;
 mod heard;
 mod lie;
+mod radio;
 mod speech;
 mod witness;
 
 use rne_core::{Evidence, LevelReport, Member, NeedVector, Rating, RoundOutcome};
 use serde::{Deserialize, Serialize};
 
-pub use channel::{Channel, Link};
+pub use channel::{Channel, Ends, Link};
 pub use heard::Heard;
 pub(crate) use heard::named;
 
@@ -26,16 +28,19 @@ use crate::scenario::{Lie, Measure};
 use channel::Sending;
 use heard::Trip;
 use lie::{Told, said_of_mate};
+use radio::ForMate;
 use witness::Witnesses;
 
 /// The state of the telemetry.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub struct Telemetry {
     /// What the base heard.
     heard: Heard,
     /// Messages under way, in the order in which they were sent.
     under_way: Vec<Message>,
-    /// The channel to the base.
+    /// What robots told their group-mates and these have not heard yet, in the order in which it was sent.
+    for_mates: Vec<ForMate>,
+    /// The channel.
     channel: Channel,
     /// The lies that each robot tells.
     told: Vec<Vec<Told>>,
@@ -55,6 +60,7 @@ struct Message {
     heard_s: f64,
     by: RobotId,
     sent_s: f64,
+    by_radio: bool,
     says: Says,
 }
 
@@ -106,7 +112,8 @@ impl Telemetry {
         Some(Box::new(Self {
             heard: Heard::nothing(robots, model.mission.low_energy.threshold),
             under_way: Vec::new(),
-            channel: Channel::new(robots),
+            for_mates: Vec::new(),
+            channel: Channel::default(),
             told: rules.told_by.iter().map(told).collect(),
             read: vec![None; robots],
             is_mute: vec![false; robots],
@@ -122,9 +129,8 @@ impl Telemetry {
         &self.heard
     }
 
-    /// The links of the robots to the base.
-    #[must_use]
-    pub fn links(&self) -> &[Link] {
+    /// The links on which anything was sent.
+    pub fn links(&self) -> impl Iterator<Item = (&Ends, &Link)> {
         self.channel.links()
     }
 
@@ -213,7 +219,7 @@ impl Telemetry {
         for robot in now.team.iter().filter(|robot| robot.is_able()) {
             for rating in self.witnesses.ratings(rules, robot.id, now.round) {
                 let top_mps = now.team[rating.of as usize].spec.speed_mps;
-                let said = self.told_of_mates(rules, robot.id, now.time_s());
+                let said = self.tells(rules, robot.id, now, Lie::is_about_mates);
                 let said = said.map_or(Some(rating), |lie| said_of_mate(&lie.lie, rating, top_mps, rules));
                 if let Some(rating) = said {
                     self.send(Says::Rating(rating), robot, now, log);
@@ -281,29 +287,27 @@ impl Telemetry {
             !(medium.is_perfect_at_home && (now.presence)(robot).is_home)
         };
         let time_s = now.time_s();
-        let heard_s = match rules.medium.as_ref().filter(|medium| by_radio(medium)) {
-            None => Some(time_s),
-            Some(medium) => {
-                let at = robot.position;
-                self.channel.send(medium, Sending { seed: rules.seed, from: robot.id.index(), at, time_s })
-            }
-        };
+        let medium = rules.medium.as_ref().filter(|medium| by_radio(medium));
+        let ends = Ends { from: robot.id, to: None };
+        let heard_s = medium.map_or(Some(time_s), |medium| {
+            let (at, to) = (robot.position, medium.base);
+            self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s })
+        });
+        let (by, sent_s, by_radio) = (robot.id, time_s, medium.is_some());
         match heard_s {
-            Some(heard_s) => self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, says }),
-            None => log.push(Event::Lost { robot: robot.id }),
+            Some(heard_s) => self.under_way.push(Message { heard_s, by, sent_s, by_radio, says }),
+            None => log.push(Event::Lost { robot: robot.id, to: None }),
         }
     }
 
     /// Lets the base hear the messages that have arrived by now.
     fn deliver(&mut self, time_s: f64, log: &mut EventLog) {
-        let messages = std::mem::take(&mut self.under_way);
-        let has_arrived = |message: &Message| message.heard_s <= time_s;
-        let (mut arrived, others): (Vec<Message>, Vec<Message>) = messages.into_iter().partition(has_arrived);
-        self.under_way = others;
+        let has_arrived = |message: &mut Message| message.heard_s <= time_s;
+        let mut arrived: Vec<Message> = self.under_way.extract_if(.., has_arrived).collect();
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
-        for Message { heard_s, by, sent_s, says } in arrived {
-            if heard_s > sent_s {
-                log.push(Event::Heard { robot: by, sent_s });
+        for Message { heard_s, by, sent_s, by_radio, says } in arrived {
+            if by_radio {
+                log.push(Event::Heard { robot: by, to: None, sent_s });
             }
             match says {
                 Says::Levels(report) => self.heard.hear_levels(LevelReport { heard_s, ..report }),

@@ -1,4 +1,4 @@
-//! What robots say: of themselves, and whether they lie about their mates.
+//! What robots say of themselves, and which lies they tell.
 
 use std::collections::BTreeMap;
 
@@ -17,15 +17,16 @@ use crate::scenario::Lie;
 const TOPICS: u64 = 128;
 
 impl Telemetry {
-    /// The lie about mates that a robot tells at a time.
-    pub(super) fn told_of_mates<'r>(
+    /// The lie of a kind that a robot tells now.
+    pub(super) fn tells<'r>(
         &self,
         rules: &'r TelemetryModel,
         by: RobotId,
-        time_s: f64,
+        now: &Now<'_>,
+        is_it: impl Fn(&Lie) -> bool,
     ) -> Option<&'r LieModel> {
         let lies = self.told[by.index()].iter().map(|told| &rules.lies[told.lie as usize]);
-        lies.into_iter().find(|lie| lie.is_told_at(time_s) && lie.lie.is_about_mates())
+        lies.into_iter().find(|lie| is_it(&lie.lie) && lie.is_told_at(now.time_s()))
     }
 
     /// Lets a robot read its gauges and say how it is.
@@ -54,12 +55,11 @@ impl Telemetry {
             needs,
             sd: [gauges[0].sd, gauges[1].sd],
         };
-        let other = self.told[id.index()].iter().find_map(|told| {
-            let lie = &rules.lies[told.lie as usize];
-            let Lie::Impersonate { name } = lie.lie else { return None };
-            lie.is_told_at(now.time_s()).then_some(name)
+        let other = self.tells(rules, id, now, |lie| matches!(lie, Lie::Impersonate { .. }));
+        let false_one = other.and_then(|lie| match lie.lie {
+            Lie::Impersonate { name } => Some(LevelReport { of: name, by: name, ..report.clone() }),
+            _ => None,
         });
-        let false_one = other.map(|name| LevelReport { of: name, by: name, ..report.clone() });
         for report in [Some(report), false_one].into_iter().flatten() {
             self.send(Says::Levels(report), robot, now, log);
         }

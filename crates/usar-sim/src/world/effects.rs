@@ -54,7 +54,7 @@ impl World {
 
     /// Whether a rescuee waits within a robot's reach.
     fn is_in_reach(&self, robot: RobotId, rescuee: RescueeId, model: &Model) -> bool {
-        let rescuee = &self.rescuees[rescuee.index()];
+        let Some(rescuee) = self.rescuees.get(rescuee.index()) else { return false };
         let apart = rescuee.position - self.robots[robot.index()].position;
         rescuee.state == RescueeState::Waiting && apart.length() <= model.mission.reach
     }

@@ -1,0 +1,53 @@
+//! What group-mates tell one another by radio of the things in the field.
+
+use super::State;
+use crate::ids::RescueeId;
+use crate::model::Model;
+use crate::report::{Report, Speaker, Statement};
+use crate::scenario::BeliefSharing;
+
+impl State {
+    /// Robots tell their group-mates what they noticed, and liars what they make up.
+    pub(super) fn tell_mates(&mut self, noticed: &[Report], model: &Model) {
+        if model.mission.belief_sharing != BeliefSharing::ByRadio {
+            return;
+        }
+        let (mission, mut scene) = self.scene(model);
+        let crew = &mission.crew;
+        mission.with_telemetry(&mut scene, |telemetry, now, log| {
+            let is_of_a_thing = |report: &&Report| !matches!(report.says, Statement::IAm(_));
+            for report in noticed.iter().filter(is_of_a_thing) {
+                let Speaker::Robot(robot) = report.from else { continue };
+                telemetry.tell_mates(report, crew.mates_of(robot), now, log);
+            }
+        });
+    }
+
+    /// Liars tell their group-mates of rescuees that do not exist.
+    pub(super) fn make_up_rescuees(&mut self, model: &Model) {
+        let (mission, mut scene) = self.scene(model);
+        let crew = &mission.crew;
+        mission.with_telemetry(&mut scene, |telemetry, now, log| {
+            for (robot, agent) in now.team.iter().zip(&crew.agents) {
+                let Some(task) = agent.task.filter(|_| agent.activity.is_in_field()) else { continue };
+                let Some(at) = telemetry.phantom(robot, model.tasks[task.index()].bounds, now) else {
+                    continue;
+                };
+                let rescuee = RescueeId((model.phantoms_of(task).start + robot.id.index()) as u32);
+                let says = Statement::RescueeWaits { rescuee, at };
+                let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
+                telemetry.tell_mates(&report, crew.mates_of(robot.id), now, log);
+            }
+        });
+    }
+
+    /// Group-mates hear what has arrived by now.
+    pub(super) fn hear_mates(&mut self, model: &Model) {
+        let Self { mission, beliefs, telemetry: Some(telemetry), log, step, .. } = self else { return };
+        for told in telemetry.heard_by_mates(*step as f64 * model.dt_s(), log) {
+            if let Some(holder) = mission.crew.holder_of(told.to, model) {
+                beliefs.hear_in_field(holder, &told.report);
+            }
+        }
+    }
+}
