@@ -304,7 +304,8 @@ fn the_engine_is_named_in_its_seam_only() {
 #[test]
 fn decisions_know_reports_and_no_world() {
     let uses = uses(&sources("usar-sim"));
-    for module in ["report", "medium", "belief", "mission", "navigation", "planning", "conflict", "intent"] {
+    for module in ["report", "telemetry", "belief", "mission", "navigation", "planning", "conflict", "intent"]
+    {
         let others = &uses[module];
         let truth =
             ["world", "physics", "sensors", "simulation"].into_iter().find(|name| others.contains(*name));

@@ -170,6 +170,74 @@ fn a_record_gives_each_question_back_with_its_evidence() {
     assert!(unheard > 10 && heard.links.iter().all(|link| link.delay_s.unwrap() >= 0.2), "{:?}", heard.links);
 }
 
+fn leak_with(sharing: &str, fields: &str) -> Scenario {
+    let text = std::fs::read_to_string(crate::support::root().join("scenarios/leak.ron")).unwrap();
+    let text = text.replace("    duration_s: 600.0,", &format!("    duration_s: 240.0,\n{fields}"));
+    let text = text.replace("mission: (", &format!("mission: (belief_sharing: {sharing}, "));
+    Scenario::parse(&text, "leak.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A shared belief, and a radio that loses and delays nothing.
+#[test]
+fn by_a_perfect_radio_mates_know_what_a_group_knows() {
+    for seed in [1, 2, 3] {
+        let sharing = |rule: &str| run(&leak_with(rule, "medium: (),"), "RNE", seed);
+        let (shared, radio, alone) = (sharing("WithGroup"), sharing("ByRadio"), sharing("WithNobody"));
+        assert_eq!(differing(&shared, &radio), ["beliefs", "evidence"], "seed {seed}");
+        assert!(differing(&shared, &alone).contains(&"bodies"), "seed {seed}: the test shows nothing");
+        let links = &radio.heard.as_ref().unwrap().links;
+        assert!(links.iter().filter(|link| link.to.is_some()).map(|link| link.sent).sum::<u64>() > 500);
+    }
+}
+
+/// A radio that is late, loses messages and is used by liars: the trial goes on from any moment as it was.
+#[test]
+fn messages_between_mates_are_part_of_the_state() {
+    let scenario = leak_with(
+        "ByRadio",
+        "medium: (delay_s: 3, range_m: 30, loss: GilbertElliott(p: 0.2, r: 0.5, good: 0, bad: 1)),
+    deceit: [(who: Count(2), lie: PhantomRescuee(every_s: 2)), (who: Count(4), lie: HideRadiation)],",
+    );
+    let whole = run(&scenario, "RNE", 2);
+    let mut rne = policy("RNE");
+    let mut trial = Simulation::new(&scenario, 2).unwrap();
+    while trial.time_s() < 30.0 {
+        assert_eq!(trial.step(&mut *rne), None);
+    }
+    let again = Simulation::restore(&scenario, &trial.snapshot("RNE")).unwrap();
+    assert_eq!(again.run(&mut *rne, |_, _, _| {}).state_hash, whole.state_hash);
+    let links = &whole.heard.as_ref().unwrap().links;
+    let to_mates = || links.iter().filter(|link| link.to.is_some());
+    assert!(to_mates().all(|link| link.delay_s.is_none_or(|delay| (delay - 3.0).abs() < 1e-9)));
+    assert!(to_mates().map(|link| link.sent - link.heard).sum::<u64>() > 100);
+}
+
+/// What the groups of both tasks believe after 60 s, and whether a robot has gone for a rescuee that does not
+/// exist.
+fn beliefs_after(lie: &str) -> (usize, bool) {
+    let scenario = leak_with("ByRadio", &format!("medium: (), deceit: [{lie}],"));
+    let mut rne = policy("RNE");
+    let mut trial = Simulation::new(&scenario, 1).unwrap();
+    let mut went = false;
+    while trial.time_s() < 60.0 {
+        assert_eq!(trial.step(&mut *rne), None);
+        let real = trial.model().rescuees.len();
+        let mut agents = trial.mission().crew.agents.iter();
+        went |= agents.any(|agent| agent.activity.claim().is_some_and(|rescuee| rescuee.index() >= real));
+    }
+    let groups = trial.model().task_ids().flat_map(|task| trial.beliefs_of(Some(task)));
+    (groups.map(|belief| belief.zones_on().len()).sum(), went)
+}
+
+#[test]
+fn robots_go_for_phantoms_and_do_not_know_of_hidden_radiation() {
+    let (honest, phantoms) =
+        (beliefs_after(""), beliefs_after("(who: Count(3), lie: PhantomRescuee(every_s: 1))"));
+    let hidden = beliefs_after("(who: Share(1), lie: HideRadiation)");
+    assert!(!honest.1 && phantoms.1, "{honest:?} {phantoms:?}");
+    assert!(hidden.0 < honest.0 && hidden.0 > 0, "{honest:?} {hidden:?}");
+}
+
 /// Shares of 1,000 teams of 6, 4 and 2 whose grouping changes when one robot says "HP 31", and the shares that
 /// an independent computation found: RNE 73 +- 4 %, HP_DIS 49 +- 5 %, ENG and DIS none.
 #[test]

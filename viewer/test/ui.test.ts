@@ -9,6 +9,7 @@ const { heat, matrixOrder, scoreText } = await import('../src/ui/roundPanel');
 const { concerns, eventText } = await import('../src/ui/eventPanel');
 const { linkTo, parseTime, readLink } = await import('../src/ui/link');
 const { Camera } = await import('../src/draw/camera');
+const { messagesAt } = await import('../src/draw/messages');
 
 describe('the clock', () => {
   it('plays to the end, and then begins again', () => {
@@ -41,6 +42,21 @@ describe('texts', () => {
       '0.01235 nats',
     ]);
     expect(words('right_of_way')).toBe('right of way');
+  });
+});
+
+describe('messages', () => {
+  it('are shown for a second', () => {
+    const at = (time: number, kind: string) => ({ time, kind, fields: {} });
+    const all = [at(1, 'Heard'), at(1.5, 'Loaded'), at(1.6, 'Lost'), at(2.2, 'Heard'), at(3, 'Heard')];
+    const times = (now: number): number[] => messagesAt(all, now).map(({ time }) => time);
+    expect([times(0.9), times(1.6), times(2.2), times(2.7), times(9)]).toEqual([
+      [],
+      [1, 1.6],
+      [1.6, 2.2],
+      [2.2],
+      [],
+    ]);
   });
 });
 

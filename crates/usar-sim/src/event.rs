@@ -285,7 +285,7 @@ pub enum Event {
     /// No round can begin, no event is to come, and every robot that can act is at home or cut off: the trial
     /// ends.
     Standstill,
-    /// A message that came over the medium was heard.
+    /// A message that the medium delayed was heard.
     Heard {
         /// The sender.
         robot: RobotId,

@@ -6,6 +6,7 @@ import { drawAround } from './around';
 import type { Camera } from './camera';
 import { drawGround, drawGroundObjects, drawNames, drawRescuees } from './ground';
 import type { Labels } from './labels';
+import { drawMessages } from './messages';
 import { drawConflicts, drawLinks, drawRobots, radiiOf, drawRoutes, drawTrails } from './robots';
 import { LARGE_TEAM, type Looks, type Sheet } from './sheet';
 import { theme } from './theme';
@@ -32,6 +33,7 @@ export function drawScene(
   const places = Array.from({ length: robots }, (_, i) => camera.toScreen(positionOf(recording, moment, i)));
   if (robots <= LARGE_TEAM) drawTrails(sheet, places);
   drawRoutes(sheet, places);
+  if (looks.messages) drawMessages(sheet, places);
   const radii = radiiOf(sheet);
   drawRobots(sheet, places, radii);
   if (looks.links) {

@@ -11,6 +11,7 @@ export interface Looks {
   viewpoint: number | null;
   routes: boolean;
   links: boolean;
+  messages: boolean;
   selected: number | null;
 }
 

@@ -39,7 +39,7 @@ export class App {
   readonly clock: Clock;
   readonly stages: Stage[];
   focus = 0;
-  private readonly looks = { routes: true, links: true };
+  private readonly looks = { routes: true, links: true, messages: false };
   private readonly timeline: Timeline;
   private readonly curves: Curves;
   private readonly robotPanel: RobotPanel;
@@ -315,6 +315,9 @@ export class App {
       },
       links: () => {
         looks.links = !looks.links;
+      },
+      messages: () => {
+        looks.messages = !looks.messages;
       },
       team: () => {
         this.select(this.focus, null);

@@ -12,6 +12,7 @@ const KEYS: [string, string][] = [
   ['[ ]', 'the round before, the next round'],
   ['r', 'routes on, off'],
   ['w', 'links from waiting robots and conflict sets on, off'],
+  ['m', 'messages of the last second on, off: lines that fade; lost ones are dashed and end halfway'],
   ['Escape', 'show the whole team'],
   ['?', 'this help'],
 ];

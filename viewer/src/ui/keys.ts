@@ -14,6 +14,7 @@ export interface KeyActions {
   follow: () => void;
   routes: () => void;
   links: () => void;
+  messages: () => void;
   team: () => void;
   help: () => void;
 }
@@ -47,6 +48,7 @@ export function actionOf(event: KeyboardEvent, actions: KeyActions): (() => void
     f: actions.follow,
     r: actions.routes,
     w: actions.links,
+    m: actions.messages,
     Escape: actions.team,
     '?': actions.help,
   };

@@ -34,7 +34,7 @@ export class Stage {
 
   constructor(
     readonly recording: Recording,
-    private readonly looks: { routes: boolean; links: boolean },
+    private readonly looks: { routes: boolean; links: boolean; messages: boolean },
     private readonly changed: () => void,
     private readonly clicked: (robot: number | null) => void,
   ) {

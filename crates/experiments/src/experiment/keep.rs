@@ -14,8 +14,8 @@ pub enum Keep {
     Rounds,
     /// `robots.csv` as well.
     Robots,
-    /// `groups.csv`, `series.csv`, `hashes.csv` with the hash chain, and what policies say of their
-    /// decisions.
+    /// `groups.csv`, `series.csv`, `hashes.csv` with the hash chain, `links.csv` with the messages of each
+    /// link, and what policies say of their decisions.
     #[default]
     Groups,
 }

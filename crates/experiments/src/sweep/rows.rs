@@ -7,7 +7,7 @@ use tables::{About, Cell, Column, Columns, columns};
 use usar_sim::event::ReturnCause;
 use usar_sim::hash::Link;
 use usar_sim::metrics::RoundRecord;
-use usar_sim::record::{RobotRecord, TrialRecord};
+use usar_sim::record::{LinkRecord, RobotRecord, TrialRecord};
 use usar_sim::scenario::NeedFile;
 
 use super::line::Finished;
@@ -54,6 +54,9 @@ pub(super) struct Delivered {
 
 /// A row of `series.csv`.
 pub(super) type MomentRow<'a> = Of<'a, Delivered>;
+
+/// A row of `links.csv`.
+pub(super) type RadioRow<'a> = Of<'a, &'a LinkRecord>;
 
 /// A row of `hashes.csv`.
 pub(super) type LinkRow<'a> = Of<'a, &'a Link>;
@@ -299,4 +302,26 @@ pub(super) fn links<'a>() -> Columns<LinkRow<'a>> {
 /// The rows of `hashes.csv` of a trial.
 pub(super) fn link_rows<'a>(key: &'a TrialKey, record: &'a TrialRecord) -> impl Iterator<Item = LinkRow<'a>> {
     record.chain.links().iter().map(move |it| Of { key, it })
+}
+
+/// The columns of `links.csv`: a link over the medium.
+pub(super) fn radio<'a>() -> Columns<RadioRow<'a>> {
+    let to = "The group-mate that was to hear it; empty for the base.";
+    let delay = "Mean delay of the messages that were heard; empty if there were none.";
+    with_trial(columns! { RadioRow:
+        "from", Natural, "", "The robot that sent.", |row| row.it.from;
+        "to", Natural, "", to, |row| row.it.to;
+        "sent", Natural, "", "Messages that went over the medium.", |row| row.it.sent;
+        "heard", Natural, "", "Messages that were not lost.", |row| row.it.heard;
+        "delay_s", Number, "s", delay, |row| row.it.delay_s;
+    })
+}
+
+/// The rows of `links.csv` of a trial.
+pub(super) fn radio_rows<'a>(
+    key: &'a TrialKey,
+    record: &'a TrialRecord,
+) -> impl Iterator<Item = RadioRow<'a>> {
+    let links = record.heard.iter().flat_map(|heard| &heard.links);
+    links.filter(|link| link.sent > 0).map(move |it| Of { key, it })
 }

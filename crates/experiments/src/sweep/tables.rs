@@ -15,8 +15,8 @@ use crate::experiment::{Experiment, Keep, Shard};
 pub(super) const TRIALS: &str = "trials.csv";
 
 /// Names of the tables, from the tables that every sweep keeps to those that take the most room.
-pub(super) const TABLES: [&str; 6] =
-    [TRIALS, "rounds.csv", "robots.csv", "groups.csv", "series.csv", links::FILE];
+pub(super) const TABLES: [&str; 7] =
+    [TRIALS, "rounds.csv", "robots.csv", "groups.csv", "series.csv", links::FILE, "links.csv"];
 
 /// The same tables as Parquet files, in the order of the tables.
 pub(super) const PARQUETS: [&str; TABLES.len()] = [
@@ -26,6 +26,7 @@ pub(super) const PARQUETS: [&str; TABLES.len()] = [
     "groups.parquet",
     "series.parquet",
     "hashes.parquet",
+    "links.parquet",
 ];
 
 /// The names of the tables that a sweep has for this `keep`. A shard has only the first; the others are
@@ -36,7 +37,7 @@ pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static 
         _ if shard.is_some() => 1,
         Keep::Rounds => 2,
         Keep::Robots => 3,
-        Keep::Groups => 6,
+        Keep::Groups => 7,
     };
     &TABLES[..count]
 }
@@ -49,6 +50,7 @@ pub(super) const A_ROW_IS: [&str; TABLES.len()] = [
     "a robot when it was grouped, in a round of a trial, with its needs as they really were",
     "a moment of a trial, every ten seconds",
     "a link of a trial's hash chain",
+    "a link over the medium in a trial, from a robot to the base or to a group-mate",
 ];
 
 /// A table of a sweep's folder.
@@ -79,6 +81,7 @@ pub fn described(experiment: &Experiment) -> [Described; TABLES.len()] {
         of(3, abouts(rows::groups(&experiment.base.needs))),
         of(4, abouts(rows::series(&experiment.metrics))),
         of(5, abouts(rows::links())),
+        of(6, abouts(rows::radio())),
     ]
 }
 
@@ -160,6 +163,8 @@ impl TableRows {
         let columns = rows::series(&experiment.metrics);
         series.add(&before, &columns, rows::series_rows(key, trial, duration_s))?;
         let Some(hashes) = tables.next() else { return Ok(()) };
-        Ok(hashes.add(&before, &rows::links(), rows::link_rows(key, &trial.record))?)
+        hashes.add(&before, &rows::links(), rows::link_rows(key, &trial.record))?;
+        let Some(radio) = tables.next() else { return Ok(()) };
+        Ok(radio.add(&before, &rows::radio(), rows::radio_rows(key, &trial.record))?)
     }
 }

@@ -60,7 +60,6 @@ struct Message {
     heard_s: f64,
     by: RobotId,
     sent_s: f64,
-    by_radio: bool,
     says: Says,
 }
 
@@ -293,9 +292,8 @@ impl Telemetry {
             let (at, to) = (robot.position, medium.base);
             self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s })
         });
-        let (by, sent_s, by_radio) = (robot.id, time_s, medium.is_some());
         match heard_s {
-            Some(heard_s) => self.under_way.push(Message { heard_s, by, sent_s, by_radio, says }),
+            Some(heard_s) => self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, says }),
             None => log.push(Event::Lost { robot: robot.id, to: None }),
         }
     }
@@ -305,8 +303,8 @@ impl Telemetry {
         let has_arrived = |message: &mut Message| message.heard_s <= time_s;
         let mut arrived: Vec<Message> = self.under_way.extract_if(.., has_arrived).collect();
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
-        for Message { heard_s, by, sent_s, by_radio, says } in arrived {
-            if by_radio {
+        for Message { heard_s, by, sent_s, says } in arrived {
+            if heard_s > sent_s {
                 log.push(Event::Heard { robot: by, to: None, sent_s });
             }
             match says {

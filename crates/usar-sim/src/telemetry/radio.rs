@@ -66,9 +66,12 @@ impl Telemetry {
         let has_arrived = |told: &mut ForMate| told.heard_s <= time_s;
         let mut arrived: Vec<ForMate> = self.for_mates.extract_if(.., has_arrived).collect();
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
-        for ForMate { from, to, sent_s, .. } in &arrived {
-            log.push(Event::Heard { robot: *from, to: Some(*to), sent_s: *sent_s });
-        }
+        let late = arrived.iter().filter(|told| told.heard_s > told.sent_s);
+        log.extend(late.map(|told| Event::Heard {
+            robot: told.from,
+            to: Some(told.to),
+            sent_s: told.sent_s,
+        }));
         arrived
     }
 

@@ -33,8 +33,8 @@ FILE is a scenario, or a sweep file: a scenario with policies, trials and axes (
 Each trial is on disk as soon as it is done. The same command again resumes where the last one stopped, and \
 skips what is finished; more --trials only adds. Nothing in the folder depends on --jobs or on \
 interruptions. It holds trials.csv (a row per trial), rounds.csv, groups.csv, robots.csv, series.csv, \
-hashes.csv (for `usar verify`), journal.jsonl, manifest.json, the file as given (experiment.ron), and its \
-scenario as run (resolved.ron).
+hashes.csv (for `usar verify`), links.csv, journal.jsonl, manifest.json, the file as given \
+(experiment.ron), and its scenario as run (resolved.ron).
 
 Exit status: 0 when all trials gave numbers, 1 when one did not, 2 for bad input, 3 for a disk error, 130 \
 after Ctrl-C.

@@ -40,6 +40,7 @@ fn a_sweep_writes_the_same_bytes_on_any_number_of_threads() {
         "groups.csv",
         "hashes.csv",
         "journal.jsonl.gz",
+        "links.csv",
         "manifest.json",
         "resolved.ron",
         "robots.csv",
