@@ -2,10 +2,12 @@
 //! clock. The command and the page in a browser both call them, and therefore say the same.
 
 pub mod bootstrap;
+pub mod breakdown;
 pub mod cautious;
 pub mod comparison;
 mod correlation;
 pub mod paired;
+pub mod scores;
 pub mod sensitivity;
 pub mod share;
 pub mod stopping;
