@@ -43,6 +43,7 @@ Examples:
   usar sweep scenarios/paper.ron
   usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
   usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
+  usar sweep scenarios/trust/tunnel.ron --policies 'RNE,RNE <- Kalman' --out results/kalman
   usar sweep scenarios/paper.ron --recordings 1          (then: usar view results/paper --policy RNE,DIS)
   usar sweep scenarios/paper.ron --tables parquet        (the tables as Parquet files as well)
   usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar cluster merge`)
