@@ -1,4 +1,5 @@
-//! The policies and the estimators of the house, one file each, with their options. They answer the questions of [`rne_core`].
+//! The policies and the estimators of the house, one file each, with their options. They answer the
+//! questions of [`rne_core`].
 //!
 //! ```
 //! let rne = policies::standard().make("RNE", "(score: Sum)")?;

@@ -30,10 +30,10 @@ impl<'t> Written<'t> {
 }
 
 impl Registry {
-    /// Makes a policy from one text: `DIS`, `RNE(score: Sum)`, `HP_DIS <- Kalman`,
-    /// `RNE <- Both(level: Kalman, trust: Brs) | Exclude(below: 0.3)`. A policy behind an estimator is asked
-    /// what the estimator thinks of the team. Without an arrow it is asked the question as it is, which is what
-    /// `<- LastReport` means as well. `Ignore` is the default of the use.
+    /// Makes a policy from one text: `DIS`, `RNE(score: Sum)`, `HP_DIS <- Kalman`, `RNE <- Both(level:
+    /// Kalman, trust: Brs) | Exclude(below: 0.3)`. A policy behind an estimator is asked what the estimator
+    /// thinks of the team. Without an arrow it is asked the question as it is, which is what `<- LastReport`
+    /// means as well. `Ignore` is the default of the use.
     ///
     /// # Errors
     /// Those of [`Registry::make`] and of [`Registry::estimator`]; a use that there is not; or an arrow of a
@@ -97,4 +97,24 @@ fn outside(text: &str, sign: &str) -> Option<usize> {
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arrow_in_brackets_or_quotes_is_none() {
+        let parts = |text| (Written::of(text).rule, Written::of(text).guide);
+        assert_eq!(
+            parts(" RNE(sort: true) <- Kalman | Ignore "),
+            ("RNE(sort: true)", Some("Kalman | Ignore"))
+        );
+        assert_eq!(parts("A<-B"), ("A", Some("B")));
+        assert_eq!(parts("RNE"), ("RNE", None));
+        for text in ["A(then: \"B <- C\")", "A(b: (c <- d))", "A(b: \"\\\" <- \")"] {
+            assert_eq!(parts(text), (text, None));
+        }
+        assert_eq!(outside("Kalman(q: 1) | Exclude(below: 0.3)", "|"), Some(13));
+    }
 }

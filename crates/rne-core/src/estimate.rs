@@ -18,6 +18,11 @@ pub trait Estimator: Send + Sync {
     /// The question lacks a fact that the estimator needs.
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError>;
 
+    /// The least number of raters that each robot must have for it to hold what it promises.
+    fn least_raters(&self) -> Option<u32> {
+        None
+    }
+
     /// A text that changes whenever its answers may change, of an estimator that leans on others: with
     /// theirs. `None` is for one that is known by its own sources, see `from_sources` of its kind.
     fn fingerprint(&self) -> Option<String> {

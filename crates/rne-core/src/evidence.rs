@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::QuestionError;
-use crate::ids::NeedId;
+use crate::ids::{NeedId, place_of};
 
 /// Rounds for which ratings are kept.
 pub const ROUNDS_OF_RATINGS: u32 = 64;
@@ -41,11 +41,12 @@ pub struct Evidence {
     /// What follows from the levels of each robot, by id.
     #[serde(default)]
     pub bodies: Vec<Body>,
-    /// What the base expects of energy and of health before the first report; absent where it expects nothing.
+    /// What the base expects of energy and of health before the first report; absent where it expects
+    /// nothing.
     #[serde(default)]
     pub initial: Option<[Expected; 2]>,
-    /// The levels of each robot as they really are, by id. It is for a control that needs no report; no policy
-    /// may look at it.
+    /// The levels of each robot as they really are, by id. It is for a control that needs no report; no
+    /// policy may look at it.
     #[serde(default)]
     pub truth: Vec<TrueLevels>,
 }
@@ -278,7 +279,7 @@ impl Evidence {
     /// The body of a robot, if it is known.
     #[must_use]
     pub fn body(&self, robot: u32) -> Option<&Body> {
-        self.bodies.binary_search_by_key(&robot, |body| body.robot).ok().map(|place| &self.bodies[place])
+        place_of(&self.bodies, robot, |body| body.robot).map(|place| &self.bodies[place])
     }
 }
 
@@ -291,8 +292,8 @@ impl RobotRound {
 }
 
 impl Rating {
-    /// How well the speed seen agrees with the speed that was said: 1 if they are equal, 0 from `tolerance` of
-    /// the rated robot's top speed at full health (metres per second) away on.
+    /// How well the speed seen agrees with the speed that was said: 1 if they are equal, 0 from `tolerance`
+    /// of the rated robot's top speed at full health (metres per second) away on.
     #[must_use]
     pub fn outcome(&self, tolerance: f64, top_mps: f64) -> f64 {
         1.0 - ((self.speed_mps - self.said_mps).abs() / (tolerance * top_mps)).min(1.0)

@@ -41,6 +41,10 @@ impl Driver for Guided {
         self.trust_use.leaves_idle() || self.rule.it.leaves_idle()
     }
 
+    fn least_raters(&self) -> Option<u32> {
+        self.estimator.it.least_raters().max(self.rule.it.least_raters())
+    }
+
     /// It leans on its rule and on its estimator.
     fn fingerprint(&self) -> Option<String> {
         Some(format!("{} <- {}", self.rule.fingerprint()?, self.estimator.fingerprint()?))

@@ -3,6 +3,7 @@
 
 use crate::evidence::{DOUBTED_POINTS, Evidence, RobotRound};
 use crate::history::RoundOutcome;
+use crate::ids::place_of;
 
 /// Two times that differ by less than this are the same, in seconds: one of them comes from a subtraction.
 pub const SAME_MOMENT_S: f64 = 1e-6;
@@ -79,8 +80,10 @@ impl<'e> SaidRounds<'e> {
     }
 
     fn place(&self, robot: u32, round: u32) -> Option<usize> {
-        let row = self.robots.binary_search(&robot).ok()?;
-        Some(row * self.rounds.len() + self.rounds.binary_search(&round).ok()?)
+        let row = place_of(&self.robots, robot, |robot| *robot)?;
+        let first = self.rounds.first()?;
+        let column = place_of(&self.rounds, round.checked_sub(*first)?, |round| round - first)?;
+        Some(row * self.rounds.len() + column)
     }
 
     /// What the base saw of a robot in a round.

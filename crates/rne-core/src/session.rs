@@ -34,6 +34,11 @@ pub trait Driver: Send + Sync {
         false
     }
 
+    /// The least number of raters that each robot must have for its estimator to hold what it promises.
+    fn least_raters(&self) -> Option<u32> {
+        None
+    }
+
     /// A text that changes whenever its answers may change. Results are kept as long as it stays. `None` is
     /// for a driver that is known by the program that has it, see `from_sources` of its kind.
     fn fingerprint(&self) -> Option<String> {

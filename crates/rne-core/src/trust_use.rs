@@ -29,16 +29,16 @@ pub enum TrustUse {
     /// Nothing: the estimated levels and needs count, whoever said what.
     #[default]
     Ignore,
-    /// A robot counts with `trust x own estimate + (1 - trust) x mean of the trusted of its role`, in its levels
-    /// and in the needs that follow from them. Trusted are all with a trust of [`TRUSTED_FROM`] or more; in a
-    /// role without them, the estimates stay.
+    /// A robot counts with `trust x own estimate + (1 - trust) x mean of the trusted of its role`, in its
+    /// levels and in the needs that follow from them. Trusted are all with a trust of [`TRUSTED_FROM`] or
+    /// more; in a role without them, the estimates stay.
     Discount,
     /// Robots that are not believed stay at home.
     Exclude(Exclude),
 }
 
-/// Which robots stay at home: those with the least trust first, in each role, but never the last member of the
-/// team that can carry or that guides.
+/// Which robots stay at home: those with the least trust first, in each role, but never the last member of
+/// the team that can carry or that guides.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Exclude {
@@ -169,8 +169,8 @@ impl Exclude {
         excluded
     }
 
-    /// The members of a role with too little trust, the least trusted first (ties: the lower id first), and how
-    /// many of them may stay at home.
+    /// The members of a role with too little trust, the least trusted first (ties: the lower id first), and
+    /// how many of them may stay at home.
     fn doubted(&self, question: &Question, estimates: &[Estimate], role: RoleId) -> (Vec<u32>, usize) {
         let all = question.members.iter().zip(estimates).filter(|(member, _)| member.role == role);
         let all: Vec<(f64, u32)> = all.map(|(member, estimate)| (estimate.trust, member.id)).collect();

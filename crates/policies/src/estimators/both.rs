@@ -32,6 +32,10 @@ impl Estimator for Both {
         Ok(levels.into_iter().zip(trust).map(joined).collect())
     }
 
+    fn least_raters(&self) -> Option<u32> {
+        self.level.it.least_raters().max(self.trust.it.least_raters())
+    }
+
     fn fingerprint(&self) -> Option<String> {
         let own = env!("SOURCES_ESTIMATOR_BOTH");
         Some(format!("{own} ({}, {})", self.level.fingerprint()?, self.trust.fingerprint()?))

@@ -1,10 +1,10 @@
 //! `Brs(q)`: a Beta reputation from which unfair raters are filtered.
 //!
-//! `R` is the mean of `Beta(1 + r, 1 + s)` over the base's own outcomes and those of the raters that are kept.
-//! A rater is dropped if `R` lies outside the `q` and `1 - q` quantiles of its own Beta distribution; all that
-//! miss are dropped at once, and again, until none does (Whitby, Josang, Indulska 2004, *Filtering Out Unfair
-//! Ratings in Bayesian Reputation Systems*). `R` lies below the `q` quantile where the distribution is less
-//! likely than `q` to be below `R`, so that no quantile is computed.
+//! `R` is the mean of `Beta(1 + r, 1 + s)` over the base's own outcomes and those of the raters that are
+//! kept. A rater is dropped if `R` lies outside the `q` and `1 - q` quantiles of its own Beta distribution;
+//! all that miss are dropped at once, and again, until none does (Whitby, Josang, Indulska 2004, *Filtering
+//! Out Unfair Ratings in Bayesian Reputation Systems*). `R` lies below the `q` quantile where the
+//! distribution is less likely than `q` to be below `R`, so that no quantile is computed.
 
 use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 use serde::{Deserialize, Serialize};

@@ -1,8 +1,8 @@
 //! `Cusum(k, h)`: shortfalls of speed are summed up until they are too many.
 //!
-//! `S <- max(0, S + (1 - x) / 0.15 - k)` with `x` the speed that was seen in terms of the speed that was said;
-//! trust `1 - min(1, S / h)` (Page 1954, *Continuous Inspection Schemes*). One `x` a round: the median of the
-//! mates' ratings.
+//! `S <- max(0, S + (1 - x) / 0.15 - k)` with `x` the speed that was seen in terms of the speed that was
+//! said; trust `1 - min(1, S / h)` (Page 1954, *Continuous Inspection Schemes*). One `x` a round: the median
+//! of the mates' ratings.
 
 use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 use serde::{Deserialize, Serialize};

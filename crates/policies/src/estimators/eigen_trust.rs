@@ -6,11 +6,13 @@
 //! Algorithm for Reputation Management in P2P Networks*). `p` is what the base itself found, by the same
 //! formula over its own outcomes, and the same for all robots while it found nothing.
 
+use rne_core::ids::place_of;
 use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 use serde::{Deserialize, Serialize};
 
+use super::counts::Counts;
 use super::last_said::{last_said, last_said_with};
-use super::outcomes::{Outcome, Outcomes, TOLERANCE};
+use super::outcomes::{Outcome, Outcomes, TOLERANCE, by_rater};
 
 /// The greatest change of a trust at which the iteration ends.
 const STILL: f64 = 1e-12;
@@ -57,17 +59,17 @@ impl Estimator for EigenTrust {
         let Some(evidence) = &question.evidence else { return last_said(question) };
         let outcomes = Outcomes::of(question, evidence, TOLERANCE);
         let robots = robots(question, outcomes.all());
-        let place = |robot: u32| robots.binary_search(&robot).ok();
-        let (mut own, mut local) = (vec![0.0; robots.len()], Vec::new());
-        for outcome in outcomes.all() {
-            let (Some(of), value) = (place(outcome.of), 2.0 * outcome.outcome - 1.0) else { continue };
-            match outcome.by.map(place) {
-                None => own[of] += value,
-                Some(Some(by)) => local.push(Link { by, of, value }),
-                Some(None) => {}
-            }
+        let place = |robot: u32| place_of(&robots, robot, |robot| *robot);
+        let (mut base, mut local) = (vec![0.0; robots.len()], Vec::new());
+        for about_one in outcomes.all().chunk_by(|a, b| a.of == b.of) {
+            let Some(of) = place(about_one[0].of) else { continue };
+            let (own, raters) = by_rater(about_one);
+            base[of] = satisfaction(own);
+            let link =
+                |(by, counts): (u32, Counts)| Some(Link { by: place(by)?, of, value: satisfaction(counts) });
+            local.extend(raters.into_iter().filter_map(link));
         }
-        let trust = eigenvector(&positive(joined(local), robots.len()), &pre_trusted(own), self.options.a);
+        let trust = eigenvector(&positive(local, robots.len()), &pre_trusted(base), self.options.a);
         let most = trust.iter().copied().fold(0.0, f64::max);
         let of = |id: u32| place(id).map_or(1.0, |place| (trust[place] / most).clamp(0.0, 1.0));
         last_said_with(question, question.members.iter().map(|member| of(member.id)))
@@ -91,11 +93,9 @@ struct Link {
     value: f64,
 }
 
-/// One link for each pair, by the raters.
-fn joined(mut links: Vec<Link>) -> Vec<Link> {
-    links.sort_by_key(|link| (link.by, link.of));
-    let sum = |pair: &[Link]| Link { value: pair.iter().map(|link| link.value).sum(), ..pair[0] };
-    links.chunk_by(|a, b| (a.by, a.of) == (b.by, b.of)).map(sum).collect()
+/// The sum of `2 o - 1` over outcomes.
+fn satisfaction(counts: Counts) -> f64 {
+    counts.good - counts.bad
 }
 
 /// The normalised rows: links above 0 as shares of their row, and the rows that have none.
@@ -149,7 +149,7 @@ mod tests {
             row.iter().enumerate().map(|(of, value)| Link { by, of, value: *value }).collect()
         };
         let links = local.iter().enumerate().flat_map(row).collect();
-        eigenvector(&positive(joined(links), local.len()), p, a)
+        eigenvector(&positive(links, local.len()), p, a)
     }
 
     /// Reference: an independent implementation in Python.
@@ -169,10 +169,9 @@ mod tests {
     }
 
     #[test]
-    fn pairs_are_added_up_and_bad_ones_count_nothing() {
+    fn bad_pairs_and_oneself_count_nothing() {
         let link = |by, of, value| Link { by, of, value };
-        let rows =
-            positive(joined(vec![link(0, 1, 1.0), link(1, 0, -1.0), link(0, 1, -0.5), link(0, 2, 1.5)]), 3);
+        let rows = positive(vec![link(0, 1, 0.5), link(1, 0, -1.0), link(0, 2, 1.5), link(2, 2, 1.0)], 3);
         assert_eq!(rows.links, [link(0, 1, 0.25), link(0, 2, 0.75)]);
         assert_eq!(rows.silent, [1, 2]);
         assert_eq!(pre_trusted(vec![3.0, -1.0, 1.0]), [0.75, 0.0, 0.25]);

@@ -62,8 +62,8 @@ pub(super) fn follow(evidence: &Evidence, seen: &[Seen], rules: &Rules, hears: b
     (guesses, passes)
 }
 
-/// What a round makes of the levels: they fall as those of the mates did. A rest fills them, or the lower one of
-/// them.
+/// What a round makes of the levels: they fall as those of the mates did. A rest fills them, or the lower
+/// one of them.
 fn predict(guesses: &mut [Guess; 2], seen: &Seen, q: f64, rest_fills_one: bool) {
     let used = seen.used;
     for (guess, used) in guesses.iter_mut().zip(used) {

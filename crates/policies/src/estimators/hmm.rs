@@ -1,10 +1,10 @@
 //! `Hmm`: each robot is healthy or faulty, and a faulty one is slower than it says.
 //!
-//! A hidden Markov model with two states, by the forward algorithm (Rabiner 1989, *A Tutorial on Hidden Markov
-//! Models*). `b` is how likely a robot is faulty: 0.05 at first, from then on `b- = b + (1 - b) 0.02` a round (a
-//! fault stays); `b = b- f1 / (b- f1 + (1 - b-) f0)` with the normal densities `f0 = N(1, 0.15)` of a healthy
-//! and `f1 = N(0.5, 0.25)` of a faulty robot at `x`, the speed that was seen in terms of the speed that was
-//! said. One `x` a round: the median of the mates' ratings. Trust is `1 - b`.
+//! A hidden Markov model with two states, by the forward algorithm (Rabiner 1989, *A Tutorial on Hidden
+//! Markov Models*). `b` is how likely a robot is faulty: 0.05 at first, from then on `b- = b + (1 - b) 0.02`
+//! a round (a fault stays); `b = b- f1 / (b- f1 + (1 - b-) f0)` with the normal densities `f0 = N(1, 0.15)`
+//! of a healthy and `f1 = N(0.5, 0.25)` of a faulty robot at `x`, the speed that was seen in terms of the
+//! speed that was said. One `x` a round: the median of the mates' ratings. Trust is `1 - b`.
 
 use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 

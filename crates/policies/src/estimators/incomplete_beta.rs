@@ -9,9 +9,9 @@ const CLOSE: f64 = 1e-15;
 /// Stands for a divisor of zero.
 const TINY: f64 = 1e-300;
 
-/// The probability that a Beta distribution with these parameters is at most `x`. Both parameters must be above
-/// 0. Source: the continued fraction of Abramowitz and Stegun, Handbook of Mathematical Functions, 26.5.8,
-/// by the method of Lentz, with the mirrored function beyond the mean.
+/// The probability that a Beta distribution with these parameters is at most `x`. Both parameters must be
+/// above 0. Source: the continued fraction of Abramowitz and Stegun, Handbook of Mathematical Functions,
+/// 26.5.8, by the method of Lentz, with the mirrored function beyond the mean.
 pub(super) fn below(x: f64, [a, b]: [f64; 2]) -> f64 {
     if x <= 0.0 {
         return 0.0;
@@ -60,8 +60,8 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Closed forms: `I_x(1, 1) = x`, `I_x(a, 1) = x^a`, `I_x(2, 2) = x^2 (3 - 2 x)`, and `I_x(a, b)` of whole
-    /// numbers as a sum of binomial terms.
+    /// Closed forms: `I_x(1, 1) = x`, `I_x(a, 1) = x^a`, `I_x(2, 2) = x^2 (3 - 2 x)`, and `I_x(a, b)` of
+    /// whole numbers as a sum of binomial terms.
     #[test]
     fn the_function_has_its_closed_forms() {
         for x in [0.0, 0.01, 0.3, 0.5, 0.77, 0.999, 1.0] {

@@ -1,12 +1,12 @@
 //! `Kalman(q, r, gate)`: a Kalman filter with a gate for each level of each robot.
 //!
-//! A level is expected to fall by what the robot's fit group-mates said that they spent: `x- = x - used`, `P- =
-//! P + q`; after a rest `x- = 100`, `P- = q`; at first `x-` and `P-` are what the base expects. With `S = P- +
-//! r`, a report `z` fails if `(z - x-)^2 / S > gate`, and changes nothing then; else `K = P- / S`, `x = x- + K
-//! (z - x-)`, `P = (1 - K) P-`. Trust is the mean of a Beta distribution of passes and failures of both
-//! levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a chi-square
-//! distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with Applications to
-//! Tracking and Navigation*, 5.4).
+//! A level is expected to fall by what the robot's fit group-mates said that they spent: `x- = x - used`,
+//! `P- = P + q`; after a rest `x- = 100`, `P- = q`; at first `x-` and `P-` are what the base expects. With
+//! `S = P- + r`, a report `z` fails if `(z - x-)^2 / S > gate`, and changes nothing then; else `K = P- / S`,
+//! `x = x- + K (z - x-)`, `P = (1 - K) P-`. Trust is the mean of a Beta distribution of passes and failures
+//! of both levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
+//! chi-square distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with
+//! Applications to Tracking and Navigation*, 5.4).
 
 use rne_core::estimate::as_said;
 use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};

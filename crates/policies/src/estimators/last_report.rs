@@ -4,8 +4,8 @@ use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::last_said::last_said;
 
-/// Takes the members as the question has them, needs that were said by themselves included, and the deviations
-/// of their gauges as sure as they say; believes everybody.
+/// Takes the members as the question has them, needs that were said by themselves included, and the
+/// deviations of their gauges as sure as they say; believes everybody.
 #[derive(Debug, Clone, Copy)]
 pub struct LastReport;
 

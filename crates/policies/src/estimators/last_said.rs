@@ -1,10 +1,11 @@
 //! The members as they were said last: the levels of every estimator that judges trust alone.
 
 use rne_core::estimate::as_said;
+use rne_core::ids::place_of;
 use rne_core::{Estimate, Evidence, PolicyError, Question};
 
-/// The members as they were said last, with the standard deviations of their gauges, believed. A robot that was
-/// never heard has the deviations that the base expects.
+/// The members as they were said last, with the standard deviations of their gauges, believed. A robot that
+/// was never heard has the deviations that the base expects.
 pub(super) fn last_said(question: &Question) -> Result<Vec<Estimate>, PolicyError> {
     let mut estimates = as_said(question)?;
     let Some(evidence) = &question.evidence else { return Ok(estimates) };
@@ -40,5 +41,5 @@ fn last_reports(question: &Question, evidence: &Evidence) -> Vec<Option<usize>> 
 
 /// The place of a robot among the members.
 pub(super) fn member_of(question: &Question, robot: u32) -> Option<usize> {
-    question.members.binary_search_by_key(&robot, |member| member.id).ok()
+    place_of(&question.members, robot, |member| member.id)
 }

@@ -17,6 +17,7 @@ mod incomplete_beta;
 pub mod kalman;
 pub mod last_report;
 mod last_said;
+mod medians;
 mod outcomes;
 pub mod rne;
 mod rounds;

@@ -28,8 +28,8 @@ pub(super) struct Outcome {
 pub(super) struct Outcomes(Vec<Outcome>);
 
 impl Outcomes {
-    /// The outcomes of some evidence. A speed that is `tolerance` of top speed from what was said is an outcome
-    /// of 0. Ratings of a robot whose body is not known do not count.
+    /// The outcomes of some evidence. A speed that is `tolerance` of top speed from what was said is an
+    /// outcome of 0. Ratings of a robot whose body is not known do not count.
     pub(super) fn of(question: &Question, evidence: &Evidence, tolerance: f64) -> Self {
         let own = SaidRounds::new(evidence).energy_outcomes(&question.history).into_iter();
         let mut all: Vec<Outcome> = own
@@ -42,7 +42,10 @@ impl Outcomes {
         };
         all.extend(evidence.ratings.iter().filter_map(rated));
         all.sort_by(|a, b| {
-            let key = |outcome: &Outcome| (outcome.of, outcome.round, outcome.by);
+            let by = |by: Option<u32>| by.map_or(0, |by| u64::from(by) + 1);
+            let key = |outcome: &Outcome| {
+                (u64::from(outcome.of) << u32::BITS | u64::from(outcome.round), by(outcome.by))
+            };
             key(a).cmp(&key(b)).then(a.outcome.total_cmp(&b.outcome))
         });
         Self(all)

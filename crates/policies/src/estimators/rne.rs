@@ -1,13 +1,13 @@
 //! `Rne(t0)`: Relative Needs Entropy between what a robot said of itself and what others measured of it.
 //!
-//! `T(said, measured)` with the team's weights, each need divided by its maximum over the team, as the policy
-//! RNE compares robots (Yang, Parasuraman 2021, *How Can Robots Trust Each Other For Better Cooperation?*); trust
-//! `exp(-T / t0)`. `T` is small: with `t0` = 1 a lie of 40 points still gets 0.976. The needs that are
-//! compared follow from levels:
+//! `T(said, measured)` with the team's weights, each need divided by its maximum over the team, as the
+//! policy RNE compares robots (Yang, Parasuraman 2021, *How Can Robots Trust Each Other For Better
+//! Cooperation?*); trust `exp(-T / t0)`. `T` is small: with `t0` = 1 a lie of 40 points still gets 0.976.
+//! The needs that are compared follow from levels:
 //!
-//! - energy: said when a round was over, against said when it began less what the fit group-mates said that they
-//!   spent; for a robot that had to turn back though it had said that it was far from tired, what it would have
-//!   by its own words, against the threshold of a rest;
+//! - energy: said when a round was over, against said when it began less what the fit group-mates said that
+//!   they spent; for a robot that had to turn back though it had said that it was far from tired, what it
+//!   would have by its own words, against the threshold of a rest;
 //! - health: said when a round began, against the median of what its mates measured by its speed.
 //!
 //! A level that nobody measured counts as said. `T` is the mean over the rounds in which one was measured.
@@ -20,6 +20,7 @@ use rne_core::{
 use serde::{Deserialize, Serialize};
 
 use super::last_said::{last_said, last_said_with, member_of};
+use super::medians::by_round;
 
 /// Believes robots whose needs are as they said; levels are those said last.
 #[derive(Debug, Clone, Copy)]
@@ -106,7 +107,8 @@ fn distrust(member: &Member, body: &Body, weights: &NeedWeights, look: Look) -> 
     Ok(rne.nats().unwrap_or(f64::INFINITY))
 }
 
-/// The looks at members in the rounds in which one of their levels was measured, by the places of the members.
+/// The looks at members in the rounds in which one of their levels was measured, by the places of the
+/// members.
 fn looks(question: &Question, evidence: &Evidence) -> Vec<(usize, Look)> {
     let said = SaidRounds::new(evidence);
     let seen = measured_hp(question, evidence);
@@ -116,8 +118,8 @@ fn looks(question: &Question, evidence: &Evidence) -> Vec<(usize, Look)> {
             let Some(member) = member_of(question, used.robot) else { continue };
             let Some(begun) = said.first(used.robot, round.round) else { continue };
             let energy = energy_look(evidence, &said, used, round.round);
-            let found = seen.binary_search_by_key(&(member, round.round), |seen| (seen.member, seen.round));
-            let hp = found.ok().map(|place| seen[place].hp);
+            let found = seen[member].binary_search_by_key(&round.round, |(round, _)| *round);
+            let hp = found.ok().map(|place| seen[member][place].1);
             if energy.is_some() || hp.is_some() {
                 let [said, measured] = energy.unwrap_or([begun[0]; 2]);
                 let hp = hp.unwrap_or(begun[1]);
@@ -142,32 +144,17 @@ fn energy_look(evidence: &Evidence, said: &SaidRounds<'_>, used: Used, round: u3
     Some([said.first(used.robot, round + 1)?[0], expected.max(0.0)])
 }
 
-/// The health of a member as its mates measured it in a round, in percent.
-struct MeasuredHp {
-    member: usize,
-    round: u32,
-    hp: f64,
-}
-
-/// The medians of what mates measured, by member and round.
-fn measured_hp(question: &Question, evidence: &Evidence) -> Vec<MeasuredHp> {
-    let measured = |rating: &rne_core::Rating| {
-        let body = evidence.body(rating.of)?;
-        let (member, round) = (member_of(question, rating.of)?, rating.round);
-        Some(MeasuredHp { member, round, hp: rating.measured_hp(body.top_mps, body.floor)? })
-    };
-    let mut all: Vec<MeasuredHp> = evidence.ratings.iter().filter_map(measured).collect();
-    all.sort_by(|a, b| (a.member, a.round).cmp(&(b.member, b.round)).then(a.hp.total_cmp(&b.hp)));
-    let median = |round: &[MeasuredHp]| {
-        let middle = round.len() / 2;
-        let hp = if round.len() % 2 == 1 {
-            round[middle].hp
-        } else {
-            f64::midpoint(round[middle - 1].hp, round[middle].hp)
-        };
-        MeasuredHp { hp, ..round[0] }
-    };
-    all.chunk_by(|a, b| (a.member, a.round) == (b.member, b.round)).map(median).collect()
+/// For each member, the medians of the health that its mates measured in percent, by round.
+fn measured_hp(question: &Question, evidence: &Evidence) -> Vec<Vec<(u32, f64)>> {
+    let mut all: Vec<Vec<(u32, f64)>> = vec![Vec::new(); question.members.len()];
+    for rating in &evidence.ratings {
+        let (member, body) = (member_of(question, rating.of), evidence.body(rating.of));
+        let hp = body.and_then(|body| rating.measured_hp(body.top_mps, body.floor));
+        if let Some((member, hp)) = member.zip(hp) {
+            all[member].push((rating.round, hp));
+        }
+    }
+    all.into_iter().map(by_round).collect()
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! What the base heard of each member, question by question: one report a round, and what its group-mates said
-//! that the round before cost them.
+//! What the base heard of each member, question by question: one report a round, and what its group-mates
+//! said that the round before cost them.
 
 use rne_core::said::is_after;
 use rne_core::{Evidence, Question, SaidRounds};
@@ -9,7 +9,8 @@ use super::last_said::member_of;
 /// One member at the question of one round.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Seen {
-    /// What it said last, of what was heard since the question before and not sent before what was heard then.
+    /// What it said last, of what was heard since the question before and not sent before what was heard
+    /// then.
     pub(super) said: Option<Said>,
     /// The median of what its fit group-mates said that they spent in the round before, energy and health in
     /// percent points; 0 where nobody can tell, as in the first round and for a robot that stayed at home.

@@ -9,6 +9,7 @@
 //! Patel, Jennings, Luck 2006, *TRAVOS: Trust and Reputation in the Context of Inaccurate Information
 //! Sources*). An opinion is what the rater said in the rounds before.
 
+use rne_core::ids::place_of;
 use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 use serde::{Deserialize, Serialize};
 
@@ -65,13 +66,13 @@ impl Estimator for Travos {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
         let outcomes = Outcomes::of(question, evidence, TOLERANCE);
-        let accuracies = Accuracies::of(&outcomes);
+        let accuracies = Accuracies::of(&outcomes).judged();
         let trust = |id: u32| {
             let (own, raters) = by_rater(outcomes.about(id));
             if confidence(own, self.options.error) > self.options.confidence {
                 return own.mean();
             }
-            let opinions = raters.iter().map(|(rater, said)| adjusted(*said, accuracies.bin(*rater, *said)));
+            let opinions = raters.iter().map(|(rater, said)| adjusted(*said, accuracies.rho(*rater, *said)));
             combined(own, opinions)
         };
         last_said_with(question, question.members.iter().map(|member| trust(member.id)))
@@ -96,11 +97,15 @@ fn bin(opinion: Counts) -> usize {
     ((opinion.mean() * BINS as f64).ceil() as usize).clamp(1, BINS) - 1
 }
 
-/// An opinion as far as opinions in its bin were right.
-fn adjusted(opinion: Counts, outcomes: Counts) -> Counts {
+/// How right opinions in a bin were.
+fn rho(bin: usize, outcomes: Counts) -> f64 {
     let width = 1.0 / BINS as f64;
-    let from = bin(opinion) as f64 * width;
-    let rho = within(from, from + width, outcomes.beta());
+    let from = bin as f64 * width;
+    within(from, from + width, outcomes.beta())
+}
+
+/// An opinion as far as opinions in its bin were right.
+fn adjusted(opinion: Counts, rho: f64) -> Counts {
     let even_sd = (1.0_f64 / 12.0).sqrt();
     let mean = 0.5 + rho * (opinion.mean() - 0.5);
     let sd = even_sd + rho * (opinion.sd() - even_sd);
@@ -145,12 +150,28 @@ impl Accuracies {
     }
 
     fn place(&self, rater: u32) -> Option<usize> {
-        self.0.binary_search_by_key(&rater, |(rater, _)| *rater).ok()
+        place_of(&self.0, rater, |(rater, _)| *rater)
     }
 
-    /// The base's outcomes when an opinion of a rater lay in the bin of this one.
-    fn bin(&self, rater: u32, opinion: Counts) -> Counts {
-        self.place(rater).map(|place| self.0[place].1[bin(opinion)]).unwrap_or_default()
+    /// How right each rater was, bin by bin.
+    fn judged(&self) -> Rightness {
+        let of = |(rater, bins): &(u32, [Counts; BINS])| {
+            let mut place = 0..BINS;
+            (*rater, bins.map(|outcomes| rho(place.next().unwrap_or_default(), outcomes)))
+        };
+        Rightness(self.0.iter().map(of).collect())
+    }
+}
+
+/// For each rater and bin, how right its opinions in the bin were.
+#[derive(Debug, Clone, PartialEq)]
+struct Rightness(Vec<(u32, [f64; BINS])>);
+
+impl Rightness {
+    /// How right opinions like this one of a rater were. A rater that never rated was never wrong, nor right.
+    fn rho(&self, rater: u32, opinion: Counts) -> f64 {
+        let place = place_of(&self.0, rater, |(rater, _)| *rater);
+        place.map_or(1.0 / BINS as f64, |place| self.0[place].1[bin(opinion)])
     }
 }
 
@@ -178,10 +199,10 @@ mod tests {
         ];
         assert_eq!(cases.map(|(opinion, ..)| bin(opinion)), [1, 3, 3]);
         for (opinion, outcomes, [good, bad]) in cases {
-            let found = adjusted(opinion, outcomes);
+            let found = adjusted(opinion, rho(bin(opinion), outcomes));
             assert!(is_near(found.good, good) && is_near(found.bad, bad), "{found:?} {good} {bad}");
         }
-        let opinions = cases.map(|(opinion, outcomes, _)| adjusted(opinion, outcomes));
+        let opinions = cases.map(|(opinion, outcomes, _)| adjusted(opinion, rho(bin(opinion), outcomes)));
         assert!(is_near(combined(counts(0.0, 0.0), opinions.into_iter()), 0.741_889_020_766_213_2));
         assert!(is_near(confidence(counts(0.0, 0.0), 0.2), 0.4));
         assert!(is_near(confidence(counts(17.0, 5.0), 0.2), 0.980_604_088_823_177_2));
@@ -189,8 +210,8 @@ mod tests {
         assert!(is_near(counts(17.0, 5.0).mean(), 0.75) && is_near(counts(3.0, 0.0).mean(), 0.8));
     }
 
-    /// Rater 7 praised robot 0 in the first round (0.9 of one look: a mean of 0.63, bin 3), and the base found a
-    /// lie in the second.
+    /// Rater 7 praised robot 0 in the first round (0.9 of one look: a mean of 0.63, bin 3), and the base
+    /// found a lie in the second.
     #[test]
     fn raters_are_right_or_wrong_about_the_rounds_after_their_opinion() {
         let outcome = |by, round, outcome| Outcome { of: 0, by, round, outcome };
@@ -203,7 +224,11 @@ mod tests {
         ];
         accuracies.learn(&all);
         assert_eq!(accuracies.0[0].1[3], counts(0.0, 1.0), "the first outcome came before any opinion");
-        assert_eq!(accuracies.bin(7, counts(0.9, 0.1)), counts(0.0, 1.0));
-        assert_eq!(accuracies.bin(8, counts(1.0, 0.0)), Counts::default());
+        let judged = accuracies.judged();
+        // Beta(1, 2) has 1 - (1 - x)^2 below x: between 0.6 and 0.8 it has 0.96 - 0.84
+        assert!(is_near(judged.rho(7, counts(0.9, 0.1)), 0.12));
+        assert!(
+            is_near(judged.rho(7, counts(0.1, 0.9)), 0.2) && is_near(judged.rho(8, counts(0.9, 0.1)), 0.2)
+        );
     }
 }

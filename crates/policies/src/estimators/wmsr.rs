@@ -1,11 +1,12 @@
 //! `Wmsr(f)`: what mates saw of a robot's health, without the values that stand farthest out.
 //!
-//! Each rater of a robot measures its health by its speed. Of these values the `f` farthest above and the `f`
-//! farthest below the base's own estimate are dropped (all, if fewer lie on that side); the health is the mean
-//! of the others and of the base's own estimate, the level that the robot said last (`LeBlanc`, Zhang,
-//! Koutsoukos, Sundaram 2013, *Resilient Asymptotic Consensus in Robust Networks*). Where the base has none,
-//! because it never heard the robot, the `f` largest and the `f` smallest values are dropped. It withstands `f`
-//! liars among at least `2 f + 1` raters. Values of the last round in which the robot was rated count.
+//! Each rater of a robot measures its health by its speed. Of these values the `f` farthest above and the
+//! `f` farthest below the base's own estimate are dropped (all, if fewer lie on that side); the health is
+//! the mean of the others and of the base's own estimate, the level that the robot said last (`LeBlanc`,
+//! Zhang, Koutsoukos, Sundaram 2013, *Resilient Asymptotic Consensus in Robust Networks*). Where the base
+//! has none, because it never heard the robot, the `f` largest and the `f` smallest values are dropped. It
+//! withstands `f` liars among at least `2 f + 1` raters. Values of the last round in which the robot was
+//! rated count.
 
 use rne_core::{Estimate, Estimator, EstimatorKind, Evidence, PolicyError, Question};
 use serde::{Deserialize, Serialize};
@@ -57,6 +58,10 @@ impl Estimator for Wmsr {
             *estimate = Estimate::of_levels(member, evidence, levels, sd)?;
         }
         Ok(estimates)
+    }
+
+    fn least_raters(&self) -> Option<u32> {
+        Some(self.options.f.saturating_mul(2).saturating_add(1))
     }
 }
 

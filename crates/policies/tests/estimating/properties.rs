@@ -16,6 +16,10 @@ fn levels(estimator: &str, robot: u32) -> [f64; 2] {
     estimates(estimator, &question())[robot as usize].levels
 }
 
+fn near(found: f64, expected: f64) {
+    assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+}
+
 fn evidence(question: &mut Question) -> &mut Evidence {
     question.evidence.as_mut().unwrap()
 }
@@ -57,19 +61,20 @@ fn a_member_without_a_level_is_named() {
     assert_eq!(error, "an estimate needs the HP level of robot 3, which is missing");
 }
 
-/// The bragger has 30 % health, said 100 %, and lost a point a round; the cheat has 43 % energy less than said.
+/// The bragger has 30 % health, said 100 %, and lost a point a round; the cheat has 43 % energy less than
+/// said.
 #[test]
 fn estimators_of_levels_see_what_is_theirs_to_see() {
-    let near = |found: f64, expected: f64| assert!((found - expected).abs() < 3.0, "{found} {expected}");
+    let roughly = |found: f64, expected: f64| assert!((found - expected).abs() < 3.0, "{found} {expected}");
     near(levels("Truth", BRAGGER)[1], 23.0);
     near(levels("LastReport", BRAGGER)[1], 100.0);
     near(levels("Smooth", BRAGGER)[1], 100.0);
-    near(levels("Wmsr", 0)[1], 88.0);
+    roughly(levels("Wmsr", 0)[1], 88.0);
     assert!(levels("Wmsr", BRAGGER)[1] < 55.0, "mates saw 24 %, itself said 100 %");
     near(levels("Truth", CHEAT)[0], 43.0);
     near(levels("LastReport", CHEAT)[0], 83.0);
-    near(levels("Kalman", CHEAT)[0], 43.0);
-    near(levels("Kalman", 0)[0], 48.0);
+    roughly(levels("Kalman", CHEAT)[0], 43.0);
+    roughly(levels("Kalman", 0)[0], 48.0);
     near(levels("DeadReckoning", 0)[0], 80.0 - 42.0);
     assert!(trust("Kalman")[CHEAT as usize] < 0.8 && trust("Kalman")[0] > 0.9);
     for name in ["Truth", "DeadReckoning", "LastReport", "Smooth", "Wmsr"] {
@@ -85,7 +90,7 @@ fn estimators_of_trust_find_the_bragger() {
         let others = (0..12).filter(|robot| *robot != BRAGGER).map(|robot| trust[robot as usize]);
         let least = others.fold(1.0, f64::min);
         assert!(trust[BRAGGER as usize] < least, "{name}: {trust:?}");
-        assert_eq!(levels(name, BRAGGER)[1], 100.0, "{name} judges no level");
+        near(levels(name, BRAGGER)[1], 100.0);
     }
     for name in ["Beta", "Brs", "Rne"] {
         let trust = trust(name);
@@ -109,16 +114,18 @@ fn needs_said_by_themselves_count_as_long_as_nobody_estimates_the_level() {
     let mut needs = question.members[0].needs.values().to_vec();
     (needs[1], needs[3]) = (9.0, 7.0);
     question.members[0].needs = rne_core::NeedVector::new(needs).unwrap();
-    assert_eq!(estimates("LastReport", &question)[0].needs.values()[1], 9.0);
-    assert_eq!(estimates("Beta", &question)[0].needs.values()[1], 9.0);
+    for name in ["LastReport", "Beta"] {
+        near(estimates(name, &question)[0].needs.values()[1], 9.0);
+    }
     for name in ["Truth", "Kalman", "Smooth", "Wmsr", "DeadReckoning"] {
         let needs = estimates(name, &question)[0].needs.clone();
         assert!(needs.values()[1] <= 2.0, "{name}: {needs:?}");
-        assert_eq!(needs.values()[3], 7.0, "{name}: no level says what it can carry");
+        near(needs.values()[3], 7.0); // no level says what it can carry
     }
 }
 
-/// A robot that stayed at home and had said that it is tired has rested: its level is full, and its report passes.
+/// A robot that stayed at home and had said that it is tired has rested: its level is full, and its report
+/// passes.
 #[test]
 fn a_robot_that_rests_at_home_is_expected_to_be_full() {
     let mut question = question();

@@ -48,7 +48,7 @@ fn group(robot: u32) -> u32 {
 }
 
 fn role(robot: u32) -> RoleId {
-    RoleId(if robot < 6 { 0 } else { 1 })
+    RoleId(u16::from(robot >= 6))
 }
 
 fn needs([energy, hp]: [f64; 2], robot: u32) -> NeedVector {
