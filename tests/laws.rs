@@ -89,6 +89,10 @@ fn the_program_is_known_by_the_sources_that_decide_its_numbers() {
         let made = policies::standard().parse(&kind.name).unwrap();
         assert!(made.fingerprint().is_some(), "{} brings no hash of its sources", kind.name);
     }
+    for kind in policies::standard().estimators() {
+        let made = policies::standard().estimator(&kind.name).unwrap();
+        assert!(made.fingerprint().is_some(), "{} brings no hash of its sources", kind.name);
+    }
 }
 
 /// A policy's hash covers its own file or folder and what is shared, so that no policy leans on another's
@@ -111,6 +115,32 @@ fn no_policy_names_another_one() {
             assert!(!text.contains(&format!("crate::{other}")), "policies/{}: {other}", path.display());
         }
     }
+}
+
+/// Estimators lean on what they share and not on each other. Of all policies and estimators, only the control
+/// `Truth` looks at the truth.
+#[test]
+fn no_estimator_names_another_one_and_only_a_control_sees_the_truth() {
+    let sources = sources("policies");
+    let of_estimators = |(path, _): &&(PathBuf, String)| path.starts_with("estimators");
+    let entries: Vec<String> = sources
+        .iter()
+        .filter(of_estimators)
+        .filter(|(_, text)| text.contains("pub fn kind() -> EstimatorKind"))
+        .map(|(path, _)| module(path.strip_prefix("estimators").unwrap()))
+        .collect();
+    assert!(entries.len() >= 14, "{entries:?}");
+    let others = |(path, _): &&(PathBuf, String)| path != Path::new("estimators/mod.rs");
+    for (path, text) in sources.iter().filter(of_estimators).filter(others) {
+        let named = entries.iter().find(|name| {
+            let is_word = |rest: &str| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_');
+            text.split(&format!("super::{name}")).skip(1).any(is_word)
+        });
+        assert_eq!(named, None, "policies/{}", path.display());
+    }
+    let sees = |text: &str| text.contains(".truth") || text.contains("TrueLevels");
+    let seeing: Vec<&PathBuf> = sources.iter().filter(|(_, text)| sees(text)).map(|(path, _)| path).collect();
+    assert_eq!(seeing, [Path::new("estimators/truth.rs")]);
 }
 
 /// An edited policy builds its crate and the command, and nothing between them.

@@ -238,6 +238,38 @@ fn robots_go_for_phantoms_and_do_not_know_of_hidden_radiation() {
     assert!(hidden.0 < honest.0 && hidden.0 > 0, "{honest:?} {hidden:?}");
 }
 
+/// `Truth` takes the true levels of the evidence, and bodies say what needs follow from them: together they are
+/// the members as they really were, which the record keeps beside each decision.
+#[test]
+fn the_control_has_the_levels_and_needs_of_the_truth() {
+    let scenario = paper_and(
+        "reports: (every_s: 10), deceit: [(who: Count(5), lie: Complement, on: [Energy, Hp, Need(\"v\")])],",
+    );
+    let record = run(&scenario, "DIS", 5);
+    let truth = policies::standard().estimator("Truth").unwrap();
+    let last = policies::standard().estimator("LastReport").unwrap();
+    let mut lied = 0;
+    for made in &record.decisions {
+        let question = record.question(made);
+        let estimates = truth.it.estimate(&question).unwrap();
+        for (member, found) in made.team().iter().zip(&estimates) {
+            let levels = [member.energy_level.unwrap(), member.hp_level.unwrap()];
+            assert_eq!(found.levels.map(f64::to_bits), levels.map(f64::to_bits));
+            let pairs = found.needs.values().iter().zip(member.needs.values());
+            assert!(pairs.clone().all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {member:?}");
+        }
+        let said = last.it.estimate(&question).unwrap();
+        lied += said.iter().zip(&estimates).filter(|(said, is)| said.needs != is.needs).count();
+        let evidence = question.evidence.unwrap();
+        assert!(evidence.bodies.len() == 12 && evidence.bodies[11].guides && !evidence.bodies[11].carries);
+        assert_eq!(
+            evidence.initial.map(|of| of.map(|of| [of.mean, of.sd])),
+            Some([[80.0, 20.0], [90.0, 10.0]])
+        );
+    }
+    assert!(record.decisions.len() > 3 && lied > 10, "{lied}");
+}
+
 /// Shares of 1,000 teams of 6, 4 and 2 whose grouping changes when one robot says "HP 31", and the shares that
 /// an independent computation found: RNE 73 +- 4 %, HP_DIS 49 +- 5 %, ENG and DIS none.
 #[test]

@@ -1,26 +1,46 @@
-//! Tells each policy and trust measure the hash of its sources: of its file or folder, and of the files that
-//! they share. `src/energy.rs` reads its own as `env!("SOURCES_ENERGY")`.
+//! Tells each policy, trust measure and estimator the hash of its sources: of its file or folder, and of the
+//! files that they share. `src/energy.rs` reads its own as `env!("SOURCES_ENERGY")`, `src/estimators/brs.rs`
+//! as `env!("SOURCES_ESTIMATOR_BRS")`.
 
 use std::path::{Path, PathBuf};
 
-/// Texts by which the file of a policy or of a trust measure is known; other files are shared.
-const ENTRIES: [&str; 2] = ["pub fn kind() -> PolicyKind", "pub fn measure_kind() -> MeasureKind"];
+/// Texts by which the file of a policy, of a trust measure or of an estimator is known; other files are
+/// shared.
+const ENTRIES: [&str; 3] =
+    ["pub fn kind() -> PolicyKind", "pub fn measure_kind() -> MeasureKind", "pub fn kind() -> EstimatorKind"];
 
-/// The list of them all, which a new one changes and which decides no answer.
-const LIST: &str = "lib.rs";
+/// The lists of them all, which a new one changes and which decide no answer.
+const LISTS: [&str; 2] = ["lib.rs", "estimators/mod.rs"];
+
+/// The folder of the estimators. Policies do not lean on it.
+const ESTIMATORS: &str = "estimators";
 
 fn main() {
     println!("cargo::rerun-if-changed=src");
     println!("cargo::rerun-if-changed=Cargo.toml");
-    let read = std::fs::read_dir("src").into_iter().flatten().flatten();
-    let places = read.map(|entry| entry.path()).filter(|path| !path.ends_with(LIST));
-    let (entries, mut shared): (Vec<PathBuf>, Vec<PathBuf>) = places.partition(|path| is_entry(path));
-    shared.push("Cargo.toml".into());
+    let mut places = inside("src");
+    places.retain(|path| !path.ends_with(ESTIMATORS));
+    let shared = hash_entries(places, "", vec!["Cargo.toml".into()]);
+    hash_entries(inside(&format!("src/{ESTIMATORS}")), "ESTIMATOR_", shared);
+}
+
+/// What is in a folder, without the lists.
+fn inside(folder: &str) -> Vec<PathBuf> {
+    let read = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let places = read.map(|entry| entry.path());
+    places.filter(|path| !LISTS.iter().any(|list| path.ends_with(Path::new("src").join(list)))).collect()
+}
+
+/// Says the hash of each entry among these places, with what is shared. Returns what is shared.
+fn hash_entries(places: Vec<PathBuf>, prefix: &str, mut shared: Vec<PathBuf>) -> Vec<PathBuf> {
+    let (entries, others): (Vec<PathBuf>, Vec<PathBuf>) = places.into_iter().partition(|path| is_entry(path));
+    shared.extend(others);
     for entry in entries {
         let name = entry.file_stem().unwrap_or_default().to_string_lossy().to_uppercase();
         let hash = source_hash::hash(Path::new("."), &[&shared[..], &[entry]].concat());
-        println!("cargo::rustc-env=SOURCES_{name}={hash:016x}");
+        println!("cargo::rustc-env=SOURCES_{prefix}{name}={hash:016x}");
     }
+    shared
 }
 
 fn is_entry(path: &Path) -> bool {

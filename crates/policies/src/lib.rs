@@ -1,4 +1,5 @@
-//! The policies of the house, one file each, with their options. They answer the questions of [`rne_core`].
+//! The policies and the estimators of the house, one file each, with their options. They answer the
+//! questions of [`rne_core`].
 //!
 //! ```
 //! let rne = policies::standard().make("RNE", "(score: Sum)")?;
@@ -6,11 +7,13 @@
 //! # Ok::<(), rne_core::RegistryError>(())
 //! ```
 //!
-//! A policy is one file and one line in [`standard`], and so is a trust measure; a program adds its own with
-//! [`Registry::add`] and [`Registry::add_measure`].
+//! A policy is one file and one line in [`standard`], and so is a trust measure; an estimator is one file and
+//! one line in [`estimators`]. A program adds its own with [`Registry::add`], [`Registry::add_measure`] and
+//! [`Registry::add_estimator`].
 
 pub mod distance;
 pub mod energy;
+pub mod estimators;
 mod facts;
 pub mod hp_distance;
 pub mod random;
@@ -21,7 +24,7 @@ use rne_core::Registry;
 
 pub use rne::RneOptions;
 
-/// The built-in policies, and RNE as a trust measure.
+/// The built-in policies and estimators, and RNE as a trust measure.
 #[must_use]
 pub fn standard() -> Registry {
     let mut registry = Registry::default();
@@ -29,6 +32,9 @@ pub fn standard() -> Registry {
         let _ = registry.add(kind); // their names differ
     }
     let _ = registry.add_measure(rne::measure_kind());
+    for kind in estimators::kinds() {
+        let _ = registry.add_estimator(kind); // so do theirs
+    }
     registry
 }
 

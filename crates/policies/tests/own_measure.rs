@@ -87,5 +87,8 @@ fn a_measure_of_ones_own_measures_robots_and_groups() {
     registry.choose_measure("ALIKE").unwrap();
     assert_eq!(registry.a_measure().unwrap().options, "(per_point: 1.0)");
     let unknown = registry.measure("LIKE").unwrap_err().to_string();
-    assert_eq!(unknown, "unknown trust measure \"LIKE\"; known trust measures: RNE, ALIKE");
+    assert_eq!(
+        unknown,
+        "unknown trust measure \"LIKE\"; known trust measures: RNE, ALIKE; did you mean ALIKE?"
+    );
 }

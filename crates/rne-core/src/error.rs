@@ -1,9 +1,9 @@
 //! Errors of the trust maths, of questions and of policies: one sentence each, for the person who can fix the
 //! input.
 
-use std::fmt;
-
 use thiserror::Error;
+
+pub use crate::registry_error::{Entry, RegistryError};
 
 /// A needs table, weight vector or distribution for which the mathematics is not defined.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -146,6 +146,14 @@ pub enum QuestionError {
         /// What is wrong with its needs.
         source: NeedsError,
     },
+    /// The body of a robot, in the evidence, cannot be used.
+    #[error("evidence: the body of robot {robot}: {reason}")]
+    Body {
+        /// The robot.
+        robot: u32,
+        /// The rule, and what was found.
+        reason: String,
+    },
     /// A fact that must be a finite number is not.
     #[error("{what} of robot {id} must be a finite number, found {found}")]
     NotFinite {
@@ -192,6 +200,20 @@ pub enum PolicyError {
         /// The robot that lacks it, if the fact belongs to one robot.
         robot: Option<u32>,
     },
+    /// An estimator needs a level that the question does not carry.
+    #[error("an estimate needs {what} of robot {robot}, which is missing")]
+    Unestimated {
+        /// The level ("the energy level", ...).
+        what: &'static str,
+        /// The robot that lacks it.
+        robot: u32,
+    },
+    /// A policy would leave robots idle, and the question does not allow that.
+    #[error("{policy} leaves robots idle, which this question does not allow; set mission.may_idle: true")]
+    MayNotIdle {
+        /// The policy as it was written.
+        policy: String,
+    },
     /// A robot's needs cannot be used by the policy.
     #[error("robot {id}: {source}")]
     Needs {
@@ -221,77 +243,6 @@ pub enum PolicyError {
     /// The policy gave up, in its own words.
     #[error("{0}")]
     Other(String),
-}
-
-/// A policy or trust measure that cannot be made.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum RegistryError {
-    /// No entry of that name.
-    #[error("unknown {entry} {found:?}; known {}: {}", entry.many(), known.join(", "))]
-    Unknown {
-        /// What was asked for.
-        entry: Entry,
-        /// The name that was asked for.
-        found: String,
-        /// All names of the registry.
-        known: Vec<String>,
-    },
-    /// A name that is already in the registry.
-    #[error("{entry} {name:?} is in the registry already")]
-    DuplicateName {
-        /// What was to be added.
-        entry: Entry,
-        /// The name.
-        name: String,
-    },
-    /// Options that there are not, or values that they cannot take.
-    #[error("{entry} {name}: {reason}{}", known_options(options))]
-    Options {
-        /// What was asked for.
-        entry: Entry,
-        /// Its name.
-        name: String,
-        /// What is wrong, and the options as given.
-        reason: String,
-        /// The options with their defaults.
-        options: String,
-    },
-    /// A policy whose session cannot be opened.
-    #[error("policy {policy}: {source}")]
-    Open {
-        /// Name of the policy.
-        policy: String,
-        /// Why.
-        source: PolicyError,
-    },
-}
-
-/// What a registry has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Entry {
-    /// A policy.
-    Policy,
-    /// A trust measure.
-    TrustMeasure,
-}
-
-impl Entry {
-    fn many(self) -> &'static str {
-        match self {
-            Self::Policy => "policies",
-            Self::TrustMeasure => "trust measures",
-        }
-    }
-}
-
-impl fmt::Display for Entry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Policy => "policy",
-            Self::TrustMeasure => "trust measure",
-        })
-    }
 }
 
 /// An assignment that does not answer its question.
@@ -359,8 +310,4 @@ pub enum AssignmentError {
 
 fn for_robot(robot: Option<u32>) -> String {
     robot.map(|id| format!(" for robot {id}")).unwrap_or_default()
-}
-
-fn known_options(options: &str) -> String {
-    if options.is_empty() { String::new() } else { format!("; options and defaults: {options}") }
 }

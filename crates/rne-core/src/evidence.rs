@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::history::RoundOutcome;
+use crate::error::QuestionError;
+use crate::ids::{NeedId, place_of};
 
 /// Rounds for which ratings are kept.
 pub const ROUNDS_OF_RATINGS: u32 = 64;
@@ -19,8 +20,14 @@ pub const DOUBTED_POINTS: f64 = 10.0;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {
-    /// The level below which a robot rests, in percent.
+    /// The battery level below which a robot rests, in percent.
     pub energy_threshold: f64,
+    /// The health level below which a robot rests, in percent.
+    #[serde(default)]
+    pub hp_threshold: f64,
+    /// Whether a rest fills only the lower level of the two, and not both.
+    #[serde(default)]
+    pub rest_fills_one: bool,
     /// What robots said of themselves.
     pub reports: Vec<LevelReport>,
     /// What robots saw of their group-mates, in the last [`ROUNDS_OF_RATINGS`] rounds.
@@ -31,6 +38,119 @@ pub struct Evidence {
     /// nothing names them. Others are known from the start.
     #[serde(default)]
     pub known_since: BTreeMap<u32, u32>,
+    /// What follows from the levels of each robot, by id.
+    #[serde(default)]
+    pub bodies: Vec<Body>,
+    /// What the base expects of energy and of health before the first report; absent where it expects
+    /// nothing.
+    #[serde(default)]
+    pub initial: Option<[Expected; 2]>,
+    /// The levels of each robot as they really are, by id. It is for a control that needs no report; no
+    /// policy may look at it.
+    #[serde(default)]
+    pub truth: Vec<TrueLevels>,
+}
+
+/// One of the two levels of a robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Level {
+    /// The battery level.
+    Energy,
+    /// The health level.
+    Health,
+}
+
+impl Level {
+    /// Its place in pairs of levels: energy comes first.
+    #[must_use]
+    pub fn index(self) -> usize {
+        match self {
+            Self::Energy => 0,
+            Self::Health => 1,
+        }
+    }
+}
+
+/// What the base knows of a robot's body, whatever the robot says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// The robot.
+    pub robot: u32,
+    /// Top speed at full health, in metres per second.
+    pub top_mps: f64,
+    /// Share of its top speed that it has at 0 % health.
+    pub floor: f64,
+    /// Whether it can carry rescuees.
+    pub carries: bool,
+    /// Whether it guides its group.
+    pub guides: bool,
+    /// The needs that follow from a level. The other needs do not change with the levels.
+    pub needs: Vec<LevelNeed>,
+}
+
+impl Body {
+    /// The rule that the body breaks, if any, with what was found.
+    fn fault(&self, needs: usize) -> Option<String> {
+        let Self { top_mps, floor, .. } = self;
+        if !(top_mps.is_finite() && *top_mps > 0.0) {
+            return Some(format!("top_mps must be a number above 0, found {top_mps}"));
+        }
+        if !(0.0..=1.0).contains(floor) {
+            return Some(format!("floor must be from 0 to 1, found {floor}"));
+        }
+        let unknown = self.needs.iter().map(|need| need.need.index()).find(|need| *need >= needs);
+        if let Some(found) = unknown {
+            return Some(format!("need must be a row of the table of {needs} needs (from 0), found {found}"));
+        }
+        let values = self.needs.iter().flat_map(|need| [need.at_0, need.at_100]);
+        let bad = values.into_iter().find(|value| !(value.is_finite() && *value >= 0.0));
+        bad.map(|found| format!("at_0 and at_100 must be numbers >= 0, found {found}"))
+    }
+}
+
+/// A need that follows from a level, in a straight line.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LevelNeed {
+    /// The need.
+    pub need: NeedId,
+    /// The level that it follows from.
+    pub level: Level,
+    /// Its value at 0 %.
+    pub at_0: f64,
+    /// Its value at 100 %.
+    pub at_100: f64,
+}
+
+impl LevelNeed {
+    /// Its value at these levels, in percent. Levels outside 0 to 100 % count as the nearer end.
+    #[must_use]
+    pub fn at(&self, levels: [f64; 2]) -> f64 {
+        self.at_0 + (self.at_100 - self.at_0) * (levels[self.level.index()] / 100.0).clamp(0.0, 1.0)
+    }
+}
+
+/// What is expected of a level.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Expected {
+    /// Its mean, in percent.
+    pub mean: f64,
+    /// Its standard deviation, in percent points.
+    pub sd: f64,
+}
+
+/// The levels of a robot as they really are.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrueLevels {
+    /// The robot.
+    pub robot: u32,
+    /// Battery level, in percent.
+    pub energy_level: f64,
+    /// Health level, in percent.
+    pub hp_level: f64,
 }
 
 /// What a robot said of its levels.
@@ -133,75 +253,34 @@ impl Evidence {
         let ledger = self.ledger[..extent.ledger].iter();
         Self {
             energy_threshold: self.energy_threshold,
+            hp_threshold: self.hp_threshold,
+            rest_fills_one: self.rest_fills_one,
             reports: reports.filter(|report| names(report.of, report.round)).cloned().collect(),
             ratings: ratings.filter(is_recent).filter(both).copied().collect(),
             ledger: ledger.filter(|entry| names(entry.robot, entry.round)).copied().collect(),
             known_since: extent.known_since.clone(),
+            bodies: self.bodies.clone(),
+            initial: self.initial,
+            truth: self.truth.clone(),
         }
     }
 
-    /// How far the base believes what each robot said of the energy that it spent, round by round: 1 if it is
-    /// what its group-mates spent (the median of those that came back with their group), 0 from
-    /// [`DOUBTED_POINTS`] away on. A round in which a robot rested says nothing; one in which it turned back
-    /// or was lost says something only if it had said that it was far from tired.
+    /// Sorts the bodies and the true levels by their ids, and checks the bodies.
+    pub(crate) fn check(&mut self, needs: usize) -> Result<(), QuestionError> {
+        self.bodies.sort_by_key(|body| body.robot);
+        self.truth.sort_by_key(|levels| levels.robot);
+        let mut reasons = self.bodies.iter().filter_map(|body| Some((body.robot, body.fault(needs)?)));
+        match reasons.next() {
+            Some((robot, reason)) => Err(QuestionError::Body { robot, reason }),
+            None => Ok(()),
+        }
+    }
+
+    /// The body of a robot, if it is known.
     #[must_use]
-    pub fn energy_outcomes(&self, history: &[RoundOutcome]) -> Vec<EnergyOutcome> {
-        let mut outcomes = Vec::new();
-        for round in history {
-            for group in &round.groups {
-                let ids: Vec<u32> = group.members.iter().map(|member| member.id).collect();
-                outcomes.extend(ids.iter().filter_map(|id| self.energy_outcome(*id, &ids, round.round)));
-            }
-        }
-        outcomes
+    pub fn body(&self, robot: u32) -> Option<&Body> {
+        place_of(&self.bodies, robot, |body| body.robot).map(|place| &self.bodies[place])
     }
-
-    fn energy_outcome(&self, robot: u32, group: &[u32], round: u32) -> Option<EnergyOutcome> {
-        let is_fit = |id: &u32| *id != robot && self.entry(*id, round).is_some_and(RobotRound::is_sound);
-        let mut used: Vec<f64> =
-            group.iter().filter(|id| is_fit(id)).filter_map(|id| self.said_drop(*id, round)).collect();
-        used.sort_by(f64::total_cmp);
-        let used = median(&used)?;
-        let entry = self.entry(robot, round)?;
-        let outcome = if entry.turned_back || entry.lost {
-            let said = self.first_said(robot, round)?;
-            if said - used <= self.energy_threshold + DOUBTED_POINTS {
-                return None;
-            }
-            0.0
-        } else if entry.rested {
-            return None;
-        } else {
-            1.0 - ((self.said_drop(robot, round)? - used).abs() / DOUBTED_POINTS).min(1.0)
-        };
-        Some(EnergyOutcome { robot, round, outcome })
-    }
-
-    fn entry(&self, robot: u32, round: u32) -> Option<&RobotRound> {
-        self.ledger.iter().rev().find(|entry| entry.robot == robot && entry.round == round)
-    }
-
-    /// The energy level that a robot first said in a round, in percent.
-    fn first_said(&self, robot: u32, round: u32) -> Option<f64> {
-        let first = self.reports.iter().find(|report| report.of == robot && report.round == round);
-        first.map(|report| report.energy_level)
-    }
-
-    /// By how much the energy of a robot fell in a round, as it said, in percent points.
-    fn said_drop(&self, robot: u32, round: u32) -> Option<f64> {
-        Some(self.first_said(robot, round)? - self.first_said(robot, round + 1)?)
-    }
-}
-
-/// How far the base believes what a robot said of its energy in a round.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EnergyOutcome {
-    /// The robot.
-    pub robot: u32,
-    /// The round.
-    pub round: u32,
-    /// From 0 (false) to 1 (true).
-    pub outcome: f64,
 }
 
 impl RobotRound {
@@ -213,8 +292,8 @@ impl RobotRound {
 }
 
 impl Rating {
-    /// How well the speed seen agrees with the speed that was said: 1 if they are equal, 0 from `tolerance` of
-    /// the rated robot's top speed at full health (metres per second) away on.
+    /// How well the speed seen agrees with the speed that was said: 1 if they are equal, 0 from `tolerance`
+    /// of the rated robot's top speed at full health (metres per second) away on.
     #[must_use]
     pub fn outcome(&self, tolerance: f64, top_mps: f64) -> f64 {
         1.0 - ((self.speed_mps - self.said_mps).abs() / (tolerance * top_mps)).min(1.0)
@@ -235,18 +314,9 @@ pub fn is_named(known_since: &BTreeMap<u32, u32>, robot: u32, round: u32) -> boo
     known_since.get(&robot).is_none_or(|since| round >= *since)
 }
 
-/// The median of sorted numbers.
-fn median(sorted: &[f64]) -> Option<f64> {
-    let middle = sorted.len() / 2;
-    let upper = *sorted.get(middle)?;
-    Some(if sorted.len() % 2 == 1 { upper } else { f64::midpoint(sorted[middle - 1], upper) })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::history::{GroupOutcome, MemberOutcome};
-    use crate::ids::TaskId;
 
     fn report(of: u32, round: u32, energy_level: f64) -> LevelReport {
         let (sent_s, heard_s) = (f64::from(round), f64::from(round));
@@ -266,35 +336,6 @@ mod tests {
     fn entry(robot: u32, turned_back: bool) -> RobotRound {
         let (left_s, back_s) = (0.0, Some(60.0));
         RobotRound { robot, round: 1, left_s, back_s, rescued: 0, turned_back, rested: false, lost: false }
-    }
-
-    fn rounds(ids: &[u32]) -> Vec<RoundOutcome> {
-        let members = ids.iter().map(|id| MemberOutcome { id: *id, ..MemberOutcome::default() }).collect();
-        let group = GroupOutcome { task: TaskId(0), rescued: 0, energy: 0.0, hp: 0.0, members };
-        vec![RoundOutcome { round: 1, duration_s: 60.0, groups: vec![group] }]
-    }
-
-    /// Robots 0 to 3 said that they spent 12, 10, 14 and 25 points; the mates of the last spent 12.
-    #[test]
-    fn the_base_compares_what_robots_say_they_spent() {
-        let said = [(0, 80.0, 68.0), (1, 70.0, 60.0), (2, 90.0, 76.0), (3, 60.0, 35.0)];
-        let reports = [1, 2].into_iter().flat_map(|round| {
-            said.iter()
-                .map(move |(id, first, then)| report(*id, round, if round == 1 { *first } else { *then }))
-        });
-        let ledger = (0..4).map(|id| entry(id, false)).collect();
-        let evidence =
-            Evidence { energy_threshold: 30.0, reports: reports.collect(), ledger, ..Evidence::default() };
-        let outcomes: Vec<f64> =
-            evidence.energy_outcomes(&rounds(&[0, 1, 2, 3])).iter().map(|found| found.outcome).collect();
-        // used: median of {10, 14, 25} = 14, {12, 14, 25} = 14, {12, 10, 25} = 12, {12, 10, 14} = 12
-        assert_eq!(outcomes, [0.8, 0.6, 0.8, 0.0]);
-        let mut caught = evidence.clone();
-        caught.ledger[0].turned_back = true;
-        let of = |evidence: &Evidence| evidence.energy_outcomes(&rounds(&[0, 1, 2, 3]))[0];
-        assert_eq!(of(&caught), EnergyOutcome { robot: 0, round: 1, outcome: 0.0 }, "80 - 14 > 40");
-        caught.reports[0].energy_level = 50.0;
-        assert_eq!(of(&caught).robot, 1, "50 - 14 <= 40: it may have been tired");
     }
 
     #[test]

@@ -34,7 +34,29 @@ row_id!(
     NeedId
 );
 
+/// The place of an id in a list whose ids ascend. It takes one look where the ids count from 0 without a gap.
+#[must_use]
+pub fn place_of<T>(list: &[T], id: u32, id_of: impl Fn(&T) -> u32) -> Option<usize> {
+    let guess = id as usize;
+    let is_there = list.get(guess).is_some_and(|entry| id_of(entry) == id);
+    if is_there { Some(guess) } else { list.binary_search_by_key(&id, id_of).ok() }
+}
+
 /// The ids of a table with this many rows, in order.
 pub(crate) fn rows(count: usize) -> impl DoubleEndedIterator<Item = u16> + Clone {
     0..u16::try_from(count).unwrap_or(u16::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_are_found_with_and_without_gaps() {
+        for list in [vec![0, 1, 2, 3], vec![1, 2, 3], vec![0, 2, 5, 9], vec![7], Vec::new()] {
+            for id in 0..11 {
+                assert_eq!(place_of(&list, id, |id| *id), list.iter().position(|known| *known == id));
+            }
+        }
+    }
 }

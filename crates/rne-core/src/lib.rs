@@ -19,39 +19,54 @@
 //!
 //! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies and [trust measures](TrustMeasure) have
 //! names in a [`Registry`]. Whoever asks opens a [`Session`] of a [`Driver`]; a policy is the simplest one.
+//! Where robots may be wrong or lie, an [`Estimator`] says what is true and whom to believe.
 
+pub mod arrow;
 pub mod assignments;
 pub mod decision;
 pub mod divergence;
 pub mod error;
+pub mod estimate;
 pub mod evidence;
+pub mod guided;
 pub mod hierarchy;
 pub mod history;
 pub mod ids;
+pub mod made;
 pub mod measure;
 pub mod needs;
+pub mod nested;
 pub mod policy;
 pub mod question;
 pub mod registry;
+mod registry_error;
+pub mod said;
 pub mod schema;
 pub mod session;
 pub mod trust;
+pub mod trust_use;
 
 pub use decision::{Account, Alternative, Assignment, Decision};
 pub use divergence::{
     jeffreys, jensen_shannon, mutual_information, relative_entropy, relative_entropy_by_need,
 };
 pub use error::{AssignmentError, NeedsError, PolicyError, QuestionError, RegistryError};
-pub use evidence::{EnergyOutcome, Evidence, Extent, LevelReport, Rating, RobotRound};
+pub use estimate::{Estimate, Estimator};
+pub use evidence::{
+    Body, Evidence, Expected, Extent, Level, LevelNeed, LevelReport, Rating, RobotRound, TrueLevels,
+};
 pub use history::{GroupOutcome, MemberOutcome, RoundOutcome};
 pub use ids::{NeedId, RoleId, TaskId};
+pub use made::{Made, MadeEstimator, MadeMeasure, MadePolicy};
 pub use measure::{NeedPart, TeamTrust, TrustMeasure};
 pub use needs::{NeedDistribution, NeedVector, NeedWeights};
 pub use policy::Policy;
 pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
-pub use registry::{Kind, MadeMeasure, MadePolicy, MeasureKind, PolicyKind, Registry};
+pub use registry::{EstimatorKind, Kind, MeasureKind, PolicyKind, Registry};
+pub use said::{EnergyOutcome, SaidRounds, Used};
 pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};
 pub use trust::{LogBase, RelativeNeedsEntropy};
+pub use trust_use::TrustUse;
 
 /// The README's example is compiled and run.
 #[cfg(doctest)]

@@ -192,7 +192,7 @@ impl From<u64> for RandomSeed {
 }
 
 impl Question {
-    /// Sorts the members by their ids and checks that all parts are consistent.
+    /// Sorts the members and the bodies by their ids and checks that all parts are consistent.
     ///
     /// # Errors
     /// No task or too many; a duplicate id; a role, needs or quotas that do not fit their tables; a number
@@ -219,6 +219,9 @@ impl Question {
             self.check_member(member)?;
         }
         self.check_quotas()?;
+        if let Some(evidence) = &mut self.evidence {
+            evidence.check(self.needs.len())?;
+        }
         Ok(self)
     }
 

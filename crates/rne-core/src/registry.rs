@@ -1,5 +1,5 @@
-//! The registry: policies and trust measures by name, each with its options. It is a value: whoever has one
-//! adds kinds to it, and kinds look into the registry that makes them.
+//! The registry: policies, trust measures and estimators by name, each with its options. It is a value:
+//! whoever has one adds kinds to it, and kinds look into the registry that makes them.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,87 +9,21 @@ use ron_tree::{Node, Problem};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::decision::Decision;
-use crate::error::{Entry, PolicyError, RegistryError};
+use crate::error::{Entry, RegistryError};
+use crate::estimate::Estimator;
+use crate::made::{Made, MadeEstimator, MadeMeasure, MadePolicy};
 use crate::measure::TrustMeasure;
 use crate::policy::Policy;
-use crate::question::Question;
-use crate::session::{Absent, Asked, Driver, Pure, Session};
+use crate::session::{Absent, Driver, Pure};
 
-/// Policies and trust measures by name.
+/// Policies, trust measures and estimators by name.
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
     policies: Vec<PolicyKind>,
     measures: Vec<MeasureKind>,
+    estimators: Vec<EstimatorKind>,
     /// See [`Registry::choose_measure`].
     chosen: Option<MadeMeasure>,
-}
-
-/// A policy as it was requested.
-pub type MadePolicy = Made<dyn Driver>;
-
-/// A trust measure as it was requested.
-pub type MadeMeasure = Made<dyn TrustMeasure>;
-
-/// What a registry made.
-pub struct Made<T: ?Sized> {
-    /// Its name.
-    pub name: String,
-    /// Its name, with the options as they were written if not all are the defaults.
-    pub label: String,
-    /// All its options in RON, including the defaults. Policies with the same name and options give the same
-    /// answers. Empty where there are none.
-    pub options: String,
-    /// What was made.
-    pub it: Arc<T>,
-    /// Hash of the sources of its kind, if the kind has one.
-    sources: Option<String>,
-}
-
-impl<T: ?Sized> fmt::Debug for Made<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}{}", self.name, self.options)
-    }
-}
-
-impl<T: ?Sized> Clone for Made<T> {
-    fn clone(&self) -> Self {
-        let (name, label, options) = (self.name.clone(), self.label.clone(), self.options.clone());
-        Self { name, label, options, it: Arc::clone(&self.it), sources: self.sources.clone() }
-    }
-}
-
-impl MadeMeasure {
-    /// A text that changes whenever its values may change: that of its [kind](Kind::from_sources).
-    #[must_use]
-    pub fn fingerprint(&self) -> Option<&str> {
-        self.sources.as_deref()
-    }
-}
-
-impl MadePolicy {
-    /// Opens a session.
-    ///
-    /// # Errors
-    /// The session cannot be opened.
-    pub fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
-        self.it.open()
-    }
-
-    /// Answers one question, in a session of its own.
-    ///
-    /// # Errors
-    /// The session cannot be opened, or the question cannot be answered.
-    pub fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
-        self.open()?.decide(&Asked::of(question))
-    }
-
-    /// A text that changes whenever its answers may change: that of the [driver](Driver::fingerprint), or
-    /// else that of the [kind](Kind::from_sources).
-    #[must_use]
-    pub fn fingerprint(&self) -> Option<String> {
-        self.it.fingerprint().or_else(|| self.sources.clone())
-    }
 }
 
 impl Registry {
@@ -109,6 +43,14 @@ impl Registry {
         add(&mut self.measures, kind, Entry::TrustMeasure)
     }
 
+    /// Adds an estimator.
+    ///
+    /// # Errors
+    /// The name is taken.
+    pub fn add_estimator(&mut self, kind: EstimatorKind) -> Result<(), RegistryError> {
+        add(&mut self.estimators, kind, Entry::Estimator)
+    }
+
     /// All kinds of policies, in the order in which they were added.
     #[must_use]
     pub fn kinds(&self) -> &[PolicyKind] {
@@ -119,6 +61,12 @@ impl Registry {
     #[must_use]
     pub fn measures(&self) -> &[MeasureKind] {
         &self.measures
+    }
+
+    /// All kinds of estimators, in the order in which they were added.
+    #[must_use]
+    pub fn estimators(&self) -> &[EstimatorKind] {
+        &self.estimators
     }
 
     /// The names of all policies.
@@ -136,21 +84,12 @@ impl Registry {
         self.made(&self.policies, Entry::Policy, [name, options])
     }
 
-    /// Makes a policy from one text: `DIS`, `RNE(score: Sum)`.
+    /// Makes an estimator from one text: `Kalman`, `Beta(forget: 0.8)`.
     ///
     /// # Errors
     /// Those of [`Registry::make`].
-    pub fn parse(&self, text: &str) -> Result<MadePolicy, RegistryError> {
-        self.made(&self.policies, Entry::Policy, parts(text))
-    }
-
-    /// Opens a session of a policy that is named in one text.
-    ///
-    /// # Errors
-    /// Those of [`Registry::make`], or the session cannot be opened.
-    pub fn open(&self, text: &str) -> Result<Box<dyn Session>, RegistryError> {
-        let made = self.parse(text)?;
-        made.open().map_err(|source| RegistryError::Open { policy: made.name, source })
+    pub fn estimator(&self, text: &str) -> Result<MadeEstimator, RegistryError> {
+        self.made(&self.estimators, Entry::Estimator, parts(text))
     }
 
     /// Makes a trust measure from one text: `RNE`, `RNE(sort: true)`.
@@ -213,6 +152,9 @@ pub type PolicyKind = Kind<dyn Driver>;
 /// A kind of trust measure: its name, what it measures, and its options.
 pub type MeasureKind = Kind<dyn TrustMeasure>;
 
+/// A kind of estimator: its name, what it does, and its options.
+pub type EstimatorKind = Kind<dyn Estimator>;
+
 /// An entry of a registry: `T` is what it makes.
 pub struct Kind<T: ?Sized> {
     /// Name on the command line, in sweep files and in tables.
@@ -248,11 +190,7 @@ impl PolicyKind {
     /// A policy without options.
     pub fn plain<P: Policy + Clone + 'static>(name: &str, about: &str, policy: P) -> Self {
         let driver: Arc<dyn Driver> = Arc::new(Pure(Arc::new(policy)));
-        let make = move |options: &str, _: &Registry| match options.trim() {
-            "" | "()" => Ok((Arc::clone(&driver), String::new())),
-            text => Err(format!("it has no options, found {text:?}")),
-        };
-        Self::new([name, about], String::new(), Arc::new(make))
+        Self::without_options(name, about, driver)
     }
 
     /// A stand-in for a policy of another program, so that its results can be read here. Of each of its
@@ -303,7 +241,31 @@ impl MeasureKind {
     }
 }
 
-impl<T: ?Sized + 'static> Kind<T> {
+impl EstimatorKind {
+    /// An estimator without options.
+    pub fn plain(name: &str, about: &str, estimator: impl Estimator + 'static) -> Self {
+        let estimator: Arc<dyn Estimator> = Arc::new(estimator);
+        Self::without_options(name, about, estimator)
+    }
+
+    /// An estimator that is made from options, see [`Kind::made`].
+    pub fn with_options<O, M, E>(
+        name: &str,
+        about: &str,
+        make: impl Fn(O) -> Result<M, E> + Send + Sync + 'static,
+    ) -> Self
+    where
+        O: Default + Serialize + DeserializeOwned,
+        M: Estimator + 'static,
+        E: fmt::Display,
+    {
+        Self::made(name, about, move |options: O, _| {
+            make(options).map(|estimator| Arc::new(estimator) as Arc<dyn Estimator>)
+        })
+    }
+}
+
+impl<T: ?Sized + Send + Sync + 'static> Kind<T> {
     /// An entry that is made from options, and that may look for others in the registry that makes it. A
     /// driver that leans on others says so in its [fingerprint](Driver::fingerprint), with theirs.
     pub fn made<O, E>(
@@ -330,6 +292,14 @@ impl<T: ?Sized + 'static> Kind<T> {
         Self::new([name, about], written(&O::default()), Arc::new(make))
     }
 
+    fn without_options(name: &str, about: &str, it: Arc<T>) -> Self {
+        let make = move |options: &str, _: &Registry| match options.trim() {
+            "" | "()" => Ok((Arc::clone(&it), String::new())),
+            text => Err(format!("it has no options, found {text:?}")),
+        };
+        Self::new([name, about], String::new(), Arc::new(make))
+    }
+
     /// The same entry with a hash of the sources that decide its answers. Without one, results know it by
     /// the file of the running program, and are run again whenever that changes.
     #[must_use]
@@ -337,7 +307,7 @@ impl<T: ?Sized + 'static> Kind<T> {
         Self { sources: Some(hash.into()), ..self }
     }
 
-    fn new([name, about]: [&str; 2], defaults: String, make: Arc<Make<T>>) -> Self {
+    pub(crate) fn new([name, about]: [&str; 2], defaults: String, make: Arc<Make<T>>) -> Self {
         Self { name: name.into(), about: about.into(), defaults, sources: None, make }
     }
 }
@@ -351,13 +321,13 @@ fn add<T: ?Sized>(kinds: &mut Vec<Kind<T>>, kind: Kind<T>, entry: Entry) -> Resu
 }
 
 /// The name and the options in a text.
-fn parts(text: &str) -> [&str; 2] {
+pub(crate) fn parts(text: &str) -> [&str; 2] {
     let (name, options) = text.trim().split_at(text.trim().find('(').unwrap_or(text.trim().len()));
     [name.trim(), options]
 }
 
 /// Reads options in RON.
-fn read<O: DeserializeOwned>(text: &str) -> Result<O, Box<Problem>> {
+pub(crate) fn read<O: DeserializeOwned>(text: &str) -> Result<O, Box<Problem>> {
     let whole = |problem: Problem| match problem.field.as_str() {
         "" => Problem { field: "the text of the options".to_owned(), ..problem },
         _ => problem,
@@ -367,6 +337,6 @@ fn read<O: DeserializeOwned>(text: &str) -> Result<O, Box<Problem>> {
 }
 
 /// A value in RON.
-fn written(options: &impl Serialize) -> String {
+pub(crate) fn written(options: &impl Serialize) -> String {
     Node::of(options).map(|node| node.to_string()).unwrap_or_default()
 }

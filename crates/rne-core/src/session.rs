@@ -29,6 +29,16 @@ pub trait Driver: Send + Sync {
         false
     }
 
+    /// Whether it leaves robots idle, so that it answers only questions that allow it.
+    fn leaves_idle(&self) -> bool {
+        false
+    }
+
+    /// The least number of raters that each robot must have for its estimator to hold what it promises.
+    fn least_raters(&self) -> Option<u32> {
+        None
+    }
+
     /// A text that changes whenever its answers may change. Results are kept as long as it stays. `None` is
     /// for a driver that is known by the program that has it, see `from_sources` of its kind.
     fn fingerprint(&self) -> Option<String> {
@@ -126,7 +136,6 @@ impl<'a> Deadline<'a> {
     }
 }
 
-/// A policy is a session of its own: it keeps nothing between questions.
 /// A policy of another program, by its name.
 pub(crate) struct Absent(pub(crate) String);
 
@@ -144,6 +153,7 @@ impl Driver for Absent {
     }
 }
 
+/// A policy is a session of its own: it keeps nothing between questions.
 impl<P: Policy + ?Sized> Session for &P {
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
         Policy::decide(*self, asked.question)

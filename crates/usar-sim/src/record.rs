@@ -10,7 +10,7 @@ use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
 use crate::model::Model;
 use crate::robot::{Condition, Robot};
 use crate::tally::Tally;
-use crate::telemetry::{Ends, Heard, Link, Telemetry, named};
+use crate::telemetry::{Ends, Heard, Link, Telemetry, known, named, true_levels};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -133,7 +133,8 @@ impl DecisionRecord {
 pub struct HeardRecord {
     /// The rounds, with the costs as they were said. Questions have them as their history.
     pub history: Vec<RoundOutcome>,
-    /// All reports, ratings and rounds, in the order in which they were heard.
+    /// All reports, ratings and rounds, in the order in which they were heard, and what the base knows of the
+    /// robots without them. The truth stands beside each decision.
     pub evidence: Evidence,
     /// How much of the evidence each question had.
     pub extents: Vec<Extent>,
@@ -143,10 +144,11 @@ pub struct HeardRecord {
 
 /// A question with its history and its evidence, of which it was recorded without.
 pub(crate) fn whole_question(
-    asked: &Question,
+    made: &DecisionRecord,
     ledger: &[RoundOutcome],
     heard: Option<&HeardRecord>,
 ) -> Question {
+    let asked = &made.question;
     let rounds = heard.map_or(ledger, |heard| &heard.history);
     let history = rounds.iter().filter(|round| round.round < asked.round).cloned().collect();
     let known = heard.and_then(|heard| {
@@ -155,7 +157,8 @@ pub(crate) fn whole_question(
     });
     let Some((heard, extent)) = known else { return Question { history, ..asked.clone() } };
     let history = named(&history, &extent.known_since);
-    Question { history, evidence: Some(heard.evidence.as_of(extent)), ..asked.clone() }
+    let evidence = Evidence { truth: true_levels(made.team()), ..heard.evidence.as_of(extent) };
+    Question { history, evidence: Some(evidence), ..asked.clone() }
 }
 
 /// A link in a trial: from a robot to the base or to a group-mate.
@@ -174,7 +177,7 @@ pub struct LinkRecord {
 }
 
 impl HeardRecord {
-    pub(crate) fn of(telemetry: &Telemetry) -> Self {
+    pub(crate) fn of(telemetry: &Telemetry, model: &Model) -> Self {
         let Heard { history, evidence, extents, .. } = telemetry.heard();
         let link = |(ends, link): (&Ends, &Link)| LinkRecord {
             from: ends.from.0,
@@ -185,7 +188,7 @@ impl HeardRecord {
         };
         Self {
             history: history.clone(),
-            evidence: evidence.clone(),
+            evidence: known(model, evidence.clone()),
             extents: extents.clone(),
             links: telemetry.links().map(link).collect(),
         }
@@ -266,7 +269,7 @@ impl TrialRecord {
     /// The question as it was asked, with its history.
     #[must_use]
     pub fn question(&self, asked: &DecisionRecord) -> Question {
-        whole_question(&asked.question, &self.ledger, self.heard.as_ref())
+        whole_question(asked, &self.ledger, self.heard.as_ref())
     }
 
     /// Results and costs of the task of this name.

@@ -5,7 +5,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rne_core::{Member, NeedVector, NeedsError};
+use rne_core::{Level, LevelNeed, Member, NeedId, NeedVector, NeedsError};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
@@ -186,6 +186,18 @@ impl Robot {
         })
     }
 
+    /// Its needs that follow from a level. All of them do so in a straight line.
+    #[must_use]
+    pub(crate) fn level_needs(&self, table: &[NeedModel]) -> Vec<LevelNeed> {
+        let [empty, full] = [0.0, 100.0].map(|level| self.with_levels([level; 2]));
+        let of = |(place, need): (u16, &NeedModel)| {
+            let value = |robot: &Self| robot.need(need.measures, 0.0);
+            let level = level_of(need.measures)?;
+            Some(LevelNeed { need: NeedId(place), level, at_0: value(&empty), at_100: value(&full) })
+        };
+        (0..).zip(table).filter_map(of).collect()
+    }
+
     fn need(&self, measures: Measure, constant: f64) -> f64 {
         match measures {
             Measure::Health => self.spec.hp * self.hp / 100.0,
@@ -197,5 +209,14 @@ impl Robot {
             Measure::Observing => self.observing_range(),
             Measure::Constant => constant,
         }
+    }
+}
+
+/// The level that a need follows from, if it follows from one.
+fn level_of(measures: Measure) -> Option<Level> {
+    match measures {
+        Measure::Health | Measure::Speed | Measure::Sensing | Measure::Observing => Some(Level::Health),
+        Measure::Energy => Some(Level::Energy),
+        Measure::Resources | Measure::Capacity | Measure::Constant => None,
     }
 }

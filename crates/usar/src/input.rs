@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use experiments::Failure;
+use experiments::experiment::Experiment;
 use experiments::sweep::folder::Folder;
 use rne_core::Registry;
 use usar_sim::scenario::Scenario;
@@ -36,6 +37,11 @@ pub(crate) fn tell_warnings_of_all<'s>(
             tell(note);
         }
     }
+}
+
+/// Tells on stderr what is doubtful about the policies of a sweep.
+pub(crate) fn tell_doubts(experiment: &Experiment, path: &Path) {
+    experiment.doubts().into_iter().for_each(|doubt| tell(format_args!("note: {}: {doubt}", path.display())));
 }
 
 /// Reads the folder of a sweep. A note on stderr tells if trials are missing.

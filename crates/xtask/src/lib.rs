@@ -12,6 +12,7 @@ pub mod calibrated;
 pub mod calibration;
 pub mod damage;
 pub mod density;
+pub mod evidence;
 pub mod golden;
 pub mod grid;
 pub mod journeys;

@@ -8,6 +8,7 @@ mod keep;
 mod plan;
 mod policy;
 mod program;
+mod raters;
 mod read;
 mod setting;
 mod shard;

@@ -1,9 +1,11 @@
-//! Policies as a sweep names them: `RNE`, `RNE(score: Sum)`, or `label=RNE(score: Sum, sort: true)`.
+//! Policies as a sweep names them: `RNE`, `RNE(score: Sum)`, `label=RNE(score: Sum, sort: true)`, or
+//! `label=RNE <- Kalman | Discount`.
 
 use std::fmt;
 
+use rne_core::arrow::Written;
 use rne_core::{MadeMeasure, MadePolicy, Registry};
-use ron_tree::{Node, Value, is_unseen, nearest};
+use ron_tree::{Node, Value, is_unseen};
 use usar_sim::scenario::{Scenario, is_mistaken};
 
 use crate::oracle;
@@ -26,6 +28,8 @@ pub struct PolicySpec {
     pub name: String,
     /// The written options, with their values in RON.
     options: Vec<(String, String)>,
+    /// What stands behind its arrow: an estimator, and the use of its trust.
+    guide: Option<String>,
     /// Text that reads to the same policy.
     written: String,
     made: MadePolicy,
@@ -48,14 +52,13 @@ impl PolicySpec {
         let text = text.trim();
         let (label, rest) = label_and_rest(text);
         let (name, options) = name_and_options(rest);
-        if !registry.names().contains(&name)
-            && let Err(unknown) = registry.make(name, "")
-        {
-            let meant = nearest(name, registry.names()).map(|meant| format!("; did you mean {meant}?"));
-            refuse!("{unknown}{}", meant.unwrap_or_default());
+        if !registry.names().contains(&name) {
+            registry.make(name, "").map_err(Failure::input)?;
         }
         let options = parse_options(options)?;
-        let plain = plain(name, &options);
+        let guide =
+            Written::of(rest).guide.map(|guide| guide.split_whitespace().collect::<Vec<_>>().join(" "));
+        let plain = behind(&plain(name, &options), guide.as_deref());
         let made = registry.parse(&plain).map_err(Failure::input)?;
         if let Some(rule) = label.and_then(|label| broken_rule(label, name, registry)) {
             refuse!("the label before `=` must {rule}, found {text:?}");
@@ -63,7 +66,7 @@ impl PolicySpec {
         let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);
         let measure = registry.measure(&self::plain(name, &options)).ok();
-        Ok(Self { label, name: name.to_owned(), options, written, made, measure })
+        Ok(Self { label, name: name.to_owned(), options, guide, written, made, measure })
     }
 
     /// The policy.
@@ -95,8 +98,15 @@ impl PolicySpec {
     /// Refuses a policy that may not run in a scenario.
     ///
     /// # Errors
-    /// The scenario allows only another policy.
+    /// The scenario allows only another policy, or the policy leaves robots idle and the scenario does not
+    /// allow that.
     pub fn check_allowed(&self, scenario: &Scenario) -> Result<(), Failure> {
+        if self.made.it.leaves_idle() && !scenario.mission.may_idle {
+            return Err(Failure::input(format!(
+                "{}: mission.may_idle must be true for {}, which leaves robots idle, found false",
+                scenario.name, self.label
+            )));
+        }
         if scenario.allows(&self.plain()) {
             return Ok(());
         }
@@ -108,10 +118,10 @@ impl PolicySpec {
         )))
     }
 
-    /// Name and options without the label; the text reads to the same policy.
+    /// The policy without the label; the text reads to the same policy.
     #[must_use]
     pub fn plain(&self) -> String {
-        plain(&self.name, &self.options)
+        behind(&plain(&self.name, &self.options), self.guide.as_deref())
     }
 
     /// The written options, with their values in RON.
@@ -129,16 +139,18 @@ impl PolicySpec {
 
 /// The label of a written policy, if it has one, and the rest.
 fn label_and_rest(written: &str) -> (Option<&str>, &str) {
-    let open = written.find('(').unwrap_or(written.len());
+    let open = written.find(['(', '<']).unwrap_or(written.len());
     match written[..open].find('=') {
         Some(at) => (Some(written[..at].trim()), written[at + 1..].trim()),
         None => (None, written),
     }
 }
 
-/// The name of a written policy, with or without a label, and its options as they are written.
+/// The name of a written policy, with or without a label, and its options as they are written, without what
+/// stands behind its arrow.
 pub(crate) fn name_and_options(written: &str) -> (&str, &str) {
     let (_, rest) = label_and_rest(written.trim());
+    let rest = Written::of(rest).rule;
     let (name, options) = rest.split_at(rest.find('(').unwrap_or(rest.len()));
     (name.trim(), options)
 }
@@ -161,6 +173,11 @@ fn broken_rule(label: &str, name: &str, registry: &Registry) -> Option<&'static 
 fn plain(name: &str, options: &[(String, String)]) -> String {
     let named: Vec<String> = options.iter().map(|(option, value)| format!("{option}: {value}")).collect();
     if named.is_empty() { name.to_owned() } else { format!("{name}({})", named.join(", ")) }
+}
+
+/// A policy behind an estimator.
+fn behind(rule: &str, guide: Option<&str>) -> String {
+    guide.map_or_else(|| rule.to_owned(), |guide| format!("{rule} <- {guide}"))
 }
 
 fn parse_options(text: &str) -> Result<Vec<(String, String)>, Failure> {
@@ -204,6 +221,48 @@ mod tests {
         let labelled = spec("sum=RNE(score: Sum)");
         assert_eq!((labelled.label.as_str(), labelled.name.as_str()), ("sum", "RNE"));
         assert_eq!(split_list("DIS, a=RNE(sort: true, scale: false),ENG").len(), 3);
+    }
+
+    #[test]
+    fn a_policy_may_stand_behind_an_estimator() {
+        let spec = |text: &str| PolicySpec::parse(text, &policies::standard()).unwrap();
+        let plain = spec(" HP_DIS<-Kalman ( q: 2 ) ");
+        assert_eq!((plain.label.as_str(), plain.name.as_str()), ("HP_DIS <- Kalman ( q: 2 )", "HP_DIS"));
+        assert_eq!(plain.made().options, " <- Kalman(q: 2.0, r: 25.0, gate: 6.6349) | Ignore");
+        let text = "x=RNE(hard_rule: MeanHp) <- Both(level: Kalman, trust: Brs) | Exclude(below: 0.3)";
+        let labelled = spec(text);
+        assert_eq!((labelled.label.as_str(), labelled.written()), ("x", text));
+        assert_eq!(spec(&labelled.plain()).made().options, labelled.made().options);
+        let end = "<- Both(level: Kalman(q: 4.0, r: 25.0, gate: 6.6349), trust: Brs(q: 0.01)) | \
+                   Exclude(below: 0.3, most: 0.34)";
+        assert!(labelled.made().options.ends_with(end), "{}", labelled.made().options);
+        assert_eq!(labelled.options(), [("hard_rule".to_owned(), "MeanHp".to_owned())]);
+        assert_eq!(split_list("DIS <- Kalman, a=RNE <- Both(level: Kalman, trust: Brs) | Discount").len(), 2);
+        let fingerprint = |text: &str| spec(text).made().fingerprint().unwrap();
+        assert!(fingerprint("DIS <- Kalman") != fingerprint("DIS <- Beta"));
+        assert!(fingerprint("DIS <- Both(trust: Beta)") != fingerprint("DIS <- Both(trust: Brs)"));
+    }
+
+    #[test]
+    fn what_stands_behind_an_arrow_is_checked() {
+        let registry = with_oracle(policies::standard());
+        let refused = |text| PolicySpec::parse(text, &registry).unwrap_err().to_string();
+        let is = |text, end: &str| assert!(refused(text).ends_with(end), "{text}: {}", refused(text));
+        is("RNE <- Kalmann", "; did you mean Kalman?");
+        is(
+            "RNE <- Kalman | Exlude",
+            "unknown use \"Exlude\"; known uses: Ignore, Discount, Exclude; did you mean Exclude?",
+        );
+        is("RNE | Exclude", "`|` must stand behind an estimator: RULE <- ESTIMATOR | USE");
+        is("RNE <- Kalman | Exclude(below: 2)", "Exclude: below must be from 0 to 1, found 2");
+        is("RNE <- Kalman | Discount(by: 2)", "Discount has no options, found \"(by: 2)\"");
+        is(
+            "ORACLE <- Kalman",
+            "policy ORACLE: it plays the running trial on and looks at no report; leave out what is behind `<-`",
+        );
+        assert!(refused("RNE <- Both(lvl: Kalman)").contains("lvl is no field"));
+        assert!(refused("RNE <- Both(level: Kalmann)").contains("level: unknown estimator \"Kalmann\""));
+        assert!(refused("RNF <- Kalman").ends_with("did you mean RNE?"));
     }
 
     #[test]

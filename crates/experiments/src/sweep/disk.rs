@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
+use rne_core::arrow::Written;
 use rne_core::{PolicyKind, Registry};
 use store::Failure;
 use store::files::{self, FileHash, NewFile, file_hash, sync_folder};
@@ -182,7 +183,8 @@ fn with_absent(mut registry: Registry, manifest: &Manifest) -> Registry {
     for (written, all) in manifest.policies.iter().zip(&manifest.policy_options) {
         let (name, options) = name_and_options(written);
         if !registry.names().contains(&name) {
-            absent.entry(name.to_owned()).or_default().insert(options.to_owned(), all.clone());
+            let all = Written::of(all).rule; // estimators are not those of the other program
+            absent.entry(name.to_owned()).or_default().insert(options.trim().to_owned(), all.to_owned());
         }
     }
     for (name, spelled_out) in absent {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use parry2d::math::Vector;
 use rand::RngExt;
-use rne_core::NeedId;
+use rne_core::{Expected, NeedId};
 
 use super::{Layout, RobotModel};
 use crate::geometry::{Outline, vector};
@@ -42,8 +42,9 @@ pub struct TelemetryModel {
     pub is_liar: Vec<bool>,
     /// Whether any lie makes up rescuees.
     pub has_phantoms: bool,
-    /// The levels that a robot counts with that was never heard, in percent.
-    pub mean_levels: [f64; 2],
+    /// What the base expects of energy and of health before the first report. A robot that was never heard
+    /// counts with the means.
+    pub initial: [Expected; 2],
 }
 
 /// A lie, with what it is about by number.
@@ -150,8 +151,14 @@ impl TelemetryModel {
             lies,
             told_by,
             is_liar,
-            mean_levels: [levels.energy.mean, levels.hp.mean],
+            initial: [levels.energy, levels.hp].map(|of| Expected { mean: of.mean, sd: of.sd }),
         })
+    }
+
+    /// The levels that a robot counts with that was never heard, in percent.
+    #[must_use]
+    pub fn mean_levels(&self) -> [f64; 2] {
+        self.initial.map(|expected| expected.mean)
     }
 
     /// Whether a robot is one of these mates.

@@ -17,13 +17,14 @@ mod view;
 
 use std::sync::Arc;
 
-use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session};
+use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, TrueLevels};
 use thiserror::Error;
 
 use crate::event::Event;
 use crate::invariant::{Invariants, Overlaps};
 use crate::mission::Ending;
 use crate::record::{DecisionRecord, HeardRecord, RobotRecord, Status, TaskRecord, TrialRecord};
+use crate::robot::Robot;
 use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::world::World;
@@ -291,7 +292,7 @@ impl Simulation {
             ungrouped_hp: metrics.ungrouped[1],
             completed_rounds: metrics.completed_rounds,
             ledger: beliefs.ledger.rounds().to_vec(),
-            heard: telemetry.map(|telemetry| HeardRecord::of(&telemetry)),
+            heard: telemetry.map(|telemetry| HeardRecord::of(&telemetry, model)),
             decisions,
             robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, model)).collect(),
             counts: metrics.counts,
@@ -362,11 +363,17 @@ impl Simulation {
 
     /// Takes the mission's question, if it has one, and adds the history of earlier rounds.
     fn take_question(&mut self) {
-        let State { mission, telemetry, beliefs, .. } = &self.state;
+        let State { mission, telemetry, beliefs, world, .. } = &self.state;
         self.question = mission.question().map(|question| {
             let rounds = || beliefs.ledger.rounds().to_vec();
             let history = telemetry.as_ref().map_or_else(rounds, |telemetry| telemetry.history());
-            let evidence = telemetry.as_ref().and_then(|telemetry| telemetry.evidence());
+            let is = |member: &Member| {
+                let Robot { energy, hp, .. } = world.robots[member.id as usize];
+                TrueLevels { robot: member.id, energy_level: energy, hp_level: hp }
+            };
+            let truth = || question.members.iter().map(is).collect();
+            let model = &self.setup.model;
+            let evidence = telemetry.as_ref().and_then(|telemetry| telemetry.evidence(model, truth()));
             Question { history, evidence, ..question.clone() }
         });
     }

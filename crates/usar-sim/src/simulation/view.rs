@@ -21,8 +21,8 @@ impl Simulation {
     #[must_use]
     pub fn question_of(&self, made: &DecisionRecord) -> Question {
         let State { beliefs, telemetry, .. } = self.state();
-        let heard = telemetry.as_ref().map(|telemetry| HeardRecord::of(telemetry));
-        whole_question(&made.question, beliefs.ledger.rounds(), heard.as_ref())
+        let heard = telemetry.as_ref().map(|telemetry| HeardRecord::of(telemetry, self.model()));
+        whole_question(made, beliefs.ledger.rounds(), heard.as_ref())
     }
 
     /// The fixed part of this trial.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use rne_core::evidence::is_named;
-use rne_core::{Evidence, Extent, LevelReport, Rating, RobotRound, RoundOutcome};
+use rne_core::{Body, Evidence, Expected, Extent, LevelReport, Rating, RobotRound, RoundOutcome, TrueLevels};
 use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
@@ -15,7 +15,9 @@ use crate::robot::Robot;
 pub struct Heard {
     /// What was said of each robot last.
     last: Vec<Option<Said>>,
-    /// All reports, ratings and rounds, in the order in which they were heard.
+    /// All reports, ratings and rounds, in the order in which they were heard. What the base knows without
+    /// them is in the model.
+    #[serde(with = "Log")]
     pub evidence: Evidence,
     /// The rounds that are over, with the costs as they were said.
     pub history: Vec<RoundOutcome>,
@@ -27,6 +29,27 @@ pub struct Heard {
     spent: Vec<[f64; 2]>,
     /// The same when the last round began.
     spent_at_start: Vec<[f64; 2]>,
+}
+
+/// Evidence as it changes in a trial: without what is fixed, and without the truth.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Evidence")]
+struct Log {
+    energy_threshold: f64,
+    #[serde(skip)]
+    hp_threshold: f64,
+    #[serde(skip)]
+    rest_fills_one: bool,
+    reports: Vec<LevelReport>,
+    ratings: Vec<Rating>,
+    ledger: Vec<RobotRound>,
+    known_since: BTreeMap<u32, u32>,
+    #[serde(skip)]
+    bodies: Vec<Body>,
+    #[serde(skip)]
+    initial: Option<[Expected; 2]>,
+    #[serde(skip)]
+    truth: Vec<TrueLevels>,
 }
 
 /// What was said of a robot.

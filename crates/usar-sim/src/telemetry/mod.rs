@@ -8,17 +8,19 @@
 mod channel;
 mod gauge;
 mod heard;
+mod known;
 mod lie;
 mod radio;
 mod speech;
 mod witness;
 
-use rne_core::{Evidence, LevelReport, Member, NeedVector, Rating, RoundOutcome};
+use rne_core::{Evidence, LevelReport, Member, NeedVector, Rating, RoundOutcome, TrueLevels};
 use serde::{Deserialize, Serialize};
 
 pub use channel::{Channel, Ends, Link};
 pub use heard::Heard;
 pub(crate) use heard::named;
+pub(crate) use known::{known, true_levels};
 
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
@@ -178,16 +180,17 @@ impl Telemetry {
         self.heard.extents.push(extent);
     }
 
-    /// The evidence of the last question.
+    /// The evidence of the last question. `truth` has the levels of its members as they really are.
     #[must_use]
-    pub(crate) fn evidence(&self) -> Option<Evidence> {
-        self.heard.extents.last().map(|extent| self.heard.evidence.as_of(extent))
+    pub(crate) fn evidence(&self, model: &Model, truth: Vec<TrueLevels>) -> Option<Evidence> {
+        let extent = self.heard.extents.last()?;
+        Some(Evidence { truth, ..known(model, self.heard.evidence.as_of(extent)) })
     }
 
     /// The levels of a robot as they were heard last, in percent.
     #[must_use]
     pub(crate) fn levels(&self, rules: &TelemetryModel, robot: RobotId) -> [f64; 2] {
-        self.heard.levels(robot, rules.mean_levels)
+        self.heard.levels(robot, rules.mean_levels())
     }
 
     /// A robot as a member of a team that is to be grouped, as it was heard last. What the base hands out and
@@ -257,7 +260,7 @@ impl Telemetry {
                 trip.back_s = Some(now.time_s());
             }
         }
-        let (heard, mean) = (&self.heard, rules.mean_levels);
+        let (heard, mean) = (&self.heard, rules.mean_levels());
         let speed_need = now.model.needs.iter().position(|need| need.measures == Measure::Speed);
         for (robot, presence) in now.team.iter().zip(&presences) {
             if !presence.is_in_field || !robot.is_able() {

@@ -60,8 +60,8 @@ impl CaseArgument {
 /// Policies by name.
 #[derive(Debug, Args)]
 pub(crate) struct PoliciesArgument {
-    /// Policies, separated by commas, by their labels or with their options in brackets [default: those of
-    /// the sweep]
+    /// Policies, separated by commas, by their labels or with their options in brackets, and with an estimator
+    /// after `<-` [default: those of the sweep]
     #[arg(long)]
     pub(crate) policies: Option<String>,
 }

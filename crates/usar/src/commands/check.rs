@@ -8,7 +8,7 @@ use experiments::panic_message;
 use serde::Serialize;
 
 use crate::arguments::JsonArgument;
-use crate::input::tell_warnings_of_all;
+use crate::input::{tell_doubts, tell_warnings_of_all};
 use crate::library;
 use crate::prelude::*;
 
@@ -41,6 +41,7 @@ fn check(file: &Path, registry: &Registry) -> Result<String, Failure> {
     let experiment = Experiment::load(file, &Overrides::default(), registry)?;
     expectations(&experiment, file)?;
     tell_warnings_of_all(experiment.cases.iter().map(|case| &case.scenario), &experiment.given, file);
+    tell_doubts(&experiment, file);
     experiment.with_trials(1)?.check_start(file)?;
     let cost = experiment.check_cost(false).err();
     Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))

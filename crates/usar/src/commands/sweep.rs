@@ -15,7 +15,7 @@ use reports::table::policy_table;
 
 use self::precision::Precision;
 use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
-use crate::input::{check_trials, tell_warnings_of_all};
+use crate::input::{check_trials, tell_doubts, tell_warnings_of_all};
 use crate::library;
 use crate::parquets::write_parquets;
 use crate::prelude::*;
@@ -43,6 +43,7 @@ Examples:
   usar sweep scenarios/paper.ron
   usar sweep scenarios/paper.ron --policies RNE,RANDOM --trials 100 --out results/many
   usar sweep scenarios/paper.ron --policies 'RNE,sum=RNE(score: Sum)' --out results/sum
+  usar sweep scenarios/trust/tunnel.ron --policies 'RNE,RNE <- Kalman' --out results/kalman
   usar sweep scenarios/paper.ron --recordings 1          (then: usar view results/paper --policy RNE,DIS)
   usar sweep scenarios/paper.ron --tables parquet        (the tables as Parquet files as well)
   usar sweep scenarios/sweeps/energy.ron --shard 2/8     (then `usar cluster merge`)
@@ -104,6 +105,7 @@ impl Arguments {
         if !self.progress.quiet {
             let scenarios = experiment.cases.iter().map(|case| &case.scenario);
             tell_warnings_of_all(scenarios, &experiment.given, &self.file);
+            tell_doubts(&experiment, &self.file);
         }
         let path = self.out.clone().unwrap_or_else(|| default_path(&experiment.name, self.shard));
         if (self.selection.trials.is_none() || self.precision.is_some())

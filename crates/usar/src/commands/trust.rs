@@ -38,6 +38,7 @@ Examples:
   usar trust robots.csv --weights 6,4,2 --format csv
   usar trust robots.csv --policy RNE                             the team in two groups
   usar trust robots.csv --policy 'RNE(score: JensenShannon, hard_rule: Capability)' --json
+  usar trust question.json --policy 'HP_DIS <- Kalman | Discount' --json
   usar trust robots.csv --policy ENG --task a,3 --task b,2 --task c,1    three tasks by difficulty
   usar trust robots.csv --policy DIS --task far,2,15.6,64.2 --task near,1,73.4,51.6
   usar trust question.json --policy ENG --json

@@ -35,6 +35,11 @@ fn scenarios_policies_roles_and_metrics_are_listed() {
         policies.lines().any(|line| line.starts_with("RNE\t") && line.contains("score: MaxOfBoth")),
         "{policies}"
     );
+    let estimators = listed(&["estimators"]);
+    assert!(
+        estimators.contains("Kalman\t") && estimators.contains("(q: 4.0, r: 25.0, gate: 6.6349)"),
+        "{estimators}"
+    );
     assert!(listed(&["roles"]).contains("carrier\t6 robots; drives at 2.25 m/s"));
     assert!(listed(&["metrics", "scenarios/three-tasks.ron"]).contains("rescuees.medium\t"));
     refused(

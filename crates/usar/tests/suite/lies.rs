@@ -64,3 +64,39 @@ fn why_shows_what_was_said_beside_what_is_true() {
     assert_eq!((liar[5].as_str(), other[5] == other[6]), ("31.0", true), "{told}");
     assert!(liar[6].parse::<f64>().unwrap() > 50.0, "{told}");
 }
+
+/// Robot 1 says 31 % health. A policy behind an estimator that knows better counts with what is true.
+#[test]
+fn a_policy_behind_an_estimator_answers_a_question_with_evidence() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    succeeds(&usar(here, "new small"));
+    let lie = "deceit: [(who: Robots([1]), lie: Uniform(low: 31, high: 31), on: [Hp])],\n    tasks: [";
+    let small = read(&here.join("small.ron"));
+    std::fs::write(here.join("lie.ron"), small.replacen("tasks: [", lie, 1)).unwrap();
+    let why = succeeds(&usar(here, "why lie.ron --policy HP_DIS --seed 1 --json"));
+    let why: serde_json::Value = serde_json::from_str(&why).unwrap();
+    std::fs::write(here.join("question.json"), why["question"].to_string()).unwrap();
+    let counted = |policy: &str| -> f64 {
+        let answer = succeeds(&usar(here, &["trust", "question.json", "--policy", policy, "--json"]));
+        let decision: serde_json::Value = serde_json::from_str(&answer).unwrap();
+        let roles = decision["account"]["Ranking"]["roles"].as_array().unwrap();
+        let mut robots = roles.iter().flat_map(|role| role.as_array().unwrap());
+        robots.find(|robot| robot["id"] == 1).unwrap()["value"].as_f64().unwrap()
+    };
+    let [said, last, truth] = ["HP_DIS", "HP_DIS <- LastReport", "x=HP_DIS <- Truth | Discount"].map(counted);
+    assert!(
+        (said - 31.0).abs() < 1e-9 && (last - 31.0).abs() < 1e-9 && truth > 50.0,
+        "{said} {last} {truth}"
+    );
+    let refused = |arguments: &[&str], reason: &str| {
+        let output = usar(here, arguments);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && told.contains(reason), "{told}");
+    };
+    refused(&["trust", "question.json", "--policy", "HP_DIS <- Kalmann"], "did you mean Kalman?");
+    refused(
+        &["run", "lie.ron", "--policy", "HP_DIS <- Beta | Exclude"],
+        "mission.may_idle must be true for HP_DIS <- Beta | Exclude, which leaves robots idle, found false",
+    );
+}

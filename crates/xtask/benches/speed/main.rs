@@ -4,6 +4,7 @@
 //!
 //! `cargo bench --bench speed [-- CASE...]`
 
+mod estimating;
 mod grouping;
 mod raw;
 
@@ -61,6 +62,9 @@ fn main() {
     }
     if asked.is_empty() || asked.iter().any(|name| name == "grouping") {
         grouping::print_table();
+    }
+    if asked.is_empty() || asked.iter().any(|name| name == "estimating") {
+        estimating::print_table();
     }
 }
 

@@ -1,7 +1,8 @@
-//! `usar scenario list`: lists the available scenarios, policies, roles or metrics.
+//! `usar scenario list`: lists the available scenarios, policies, estimators, roles or metrics.
 
 use clap::ValueEnum;
 use experiments::metric::{Catalogue, Metric};
+use rne_core::Kind;
 use serde::Serialize;
 use usar_sim::scenario::{RoleFile, RoleKind, Scenario};
 
@@ -10,7 +11,7 @@ use crate::input::load;
 use crate::library;
 use crate::prelude::*;
 
-/// List scenarios, policies, roles or metrics, a line each
+/// List scenarios, policies, estimators, roles or metrics, a line each
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A line begins with the name, then a tab and what it is. Roles and metrics are those of a scenario.
@@ -19,6 +20,7 @@ Examples:
   usar scenario list                                the scenarios that the program carries
   usar scenario list scenarios my-scenarios         those of a folder
   usar scenario list policies                       with their options and defaults
+  usar scenario list estimators                     what may stand behind a policy: RNE <- Kalman
   usar scenario list roles paper
   usar scenario list metrics warehouse")]
 pub(crate) struct Arguments {
@@ -46,6 +48,8 @@ enum Of {
     Scenarios,
     /// Grouping policies
     Policies,
+    /// Estimators of what is true and whom to believe
+    Estimators,
     /// Roles of a scenario
     Roles,
     /// What is measured of a trial
@@ -57,7 +61,8 @@ impl Arguments {
         let listed = match (self.of, &self.path) {
             (Of::Scenarios, Some(path)) => scenarios(path)?,
             (Of::Scenarios, None) => carried()?,
-            (Of::Policies, _) => policies(registry),
+            (Of::Policies, _) => kinds(registry.kinds()),
+            (Of::Estimators, _) => kinds(registry.estimators()),
             (Of::Roles, _) => roles(&self.scenario()?),
             (Of::Metrics, _) => metrics(&self.scenario()?),
         };
@@ -98,11 +103,9 @@ fn scenarios(folder: &Path) -> Result<Vec<Listed>, Failure> {
     Ok(files.iter().filter_map(one).collect())
 }
 
-fn policies(registry: &Registry) -> Vec<Listed> {
-    let kinds = registry.kinds().iter();
-    kinds
-        .map(|kind| Listed { name: kind.name.clone(), about: format!("{} {}", kind.about, kind.defaults) })
-        .collect()
+fn kinds<T: ?Sized>(kinds: &[Kind<T>]) -> Vec<Listed> {
+    let about = |kind: &Kind<T>| format!("{} {}", kind.about, kind.defaults);
+    kinds.iter().map(|kind| Listed { name: kind.name.clone(), about: about(kind) }).collect()
 }
 
 fn roles(scenario: &Scenario) -> Vec<Listed> {

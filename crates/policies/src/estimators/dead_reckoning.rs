@@ -1,0 +1,38 @@
+//! `DeadReckoning`: no robot is asked. A control: what reports are worth.
+//!
+//! [`Kalman`](super::kalman) in which a robot's own reports are never looked at: a level begins as the base
+//! expects and falls by what the fit group-mates said that they spent; a rest fills it. Its variance grows by
+//! 4 square percent points a round.
+
+use rne_core::estimate::as_said;
+use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+
+use super::filter::{Rules, follow};
+use super::rounds::rounds;
+
+/// The rules of `Kalman` by default.
+const RULES: Rules = Rules { q: 4.0, r: 25.0, gate: 6.6349 };
+
+/// Expects the levels of each robot and hears no report of it; believes everybody.
+#[derive(Debug, Clone, Copy)]
+pub struct DeadReckoning;
+
+/// The registry's line.
+#[must_use]
+pub fn kind() -> EstimatorKind {
+    let about = "control: levels as expected by what group-mates spent, without a robot's own reports";
+    EstimatorKind::plain("DeadReckoning", about, DeadReckoning)
+        .from_sources(env!("SOURCES_ESTIMATOR_DEAD_RECKONING"))
+}
+
+impl Estimator for DeadReckoning {
+    fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+        let Some(evidence) = &question.evidence else { return as_said(question) };
+        let of = |(member, seen): (_, Vec<_>)| {
+            let (guesses, _) = follow(evidence, &seen, &RULES, false);
+            let levels = guesses.map(|guess| guess.x.clamp(0.0, 100.0));
+            Estimate::of_levels(member, evidence, levels, guesses.map(|guess| guess.p.sqrt()))
+        };
+        question.members.iter().zip(rounds(question, evidence)).map(of).collect()
+    }
+}

@@ -1,0 +1,159 @@
+//! The Kalman filter of one member: what the base expects of its levels by what its group-mates spent, and
+//! what of its reports that lets through.
+
+use rne_core::{Evidence, Expected};
+
+use super::counts::Counts;
+use super::rounds::Seen;
+
+/// What is expected of the levels if the base expects nothing: those of the paper's team.
+const INITIAL: [Expected; 2] = [Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }];
+
+/// How much a filter lets through.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Rules {
+    /// Variance by which a level becomes less sure in each round, in square percent points.
+    pub(super) q: f64,
+    /// Variance of a report, in square percent points.
+    pub(super) r: f64,
+    /// Greatest squared error of a report in terms of its variance.
+    pub(super) gate: f64,
+}
+
+/// What is thought of one level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Guess {
+    /// Its mean, in percent.
+    pub(super) x: f64,
+    /// Its variance, in square percent points.
+    pub(super) p: f64,
+}
+
+impl Guess {
+    /// Takes a report in; returns whether it passed. One that fails the gate changes nothing.
+    pub(super) fn hear(&mut self, z: f64, rules: &Rules) -> bool {
+        let s = self.p + rules.r;
+        let error = z - self.x;
+        if error * error / s > rules.gate {
+            return false;
+        }
+        let gain = self.p / s;
+        self.x += gain * error;
+        self.p *= 1.0 - gain;
+        true
+    }
+}
+
+/// Follows the levels of one member. `hears` tells whether its own reports count. Returns the guesses of both
+/// levels, and how many reports of a level passed and failed.
+pub(super) fn follow(evidence: &Evidence, seen: &[Seen], rules: &Rules, hears: bool) -> ([Guess; 2], Counts) {
+    let initial = evidence.initial.unwrap_or(INITIAL);
+    let mut guesses = initial.map(|expected| Guess { x: expected.mean, p: expected.sd * expected.sd });
+    let mut passes = Counts::default();
+    for (number, seen) in seen.iter().enumerate() {
+        if number > 0 {
+            predict(&mut guesses, seen, rules.q, evidence.rest_fills_one);
+        }
+        let Some(said) = seen.said.filter(|_| hears) else { continue };
+        for (guess, z) in guesses.iter_mut().zip(said.levels) {
+            passes.add(f64::from(u8::from(guess.hear(z, rules))));
+        }
+    }
+    (guesses, passes)
+}
+
+/// What a round makes of the levels: they fall as those of the mates did. A rest fills them, or the lower
+/// one of them.
+fn predict(guesses: &mut [Guess; 2], seen: &Seen, q: f64, rest_fills_one: bool) {
+    let used = seen.used;
+    for (guess, used) in guesses.iter_mut().zip(used) {
+        *guess = Guess { x: guess.x - used, p: guess.p + q };
+    }
+    if seen.rested {
+        let lower = usize::from(guesses[1].x < guesses[0].x);
+        for (level, guess) in guesses.iter_mut().enumerate() {
+            if !rest_fills_one || level == lower {
+                *guess = Guess { x: 100.0, p: q };
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rne_core::Evidence;
+
+    use super::super::rounds::Said;
+    use super::*;
+
+    const RULES: Rules = Rules { q: 4.0, r: 25.0, gate: 6.634_896_601_021_214_5 };
+
+    fn seen(said: Option<f64>, used: f64, rested: bool) -> Seen {
+        let said = said.map(|energy| Said { levels: [energy, 90.0], sd: [0.0; 2] });
+        Seen { said, used: [used, 0.0], rested }
+    }
+
+    /// The guess of energy after each round, and the passes of energy alone.
+    fn energies(rounds: &[Seen]) -> Vec<[f64; 2]> {
+        let evidence = Evidence::default();
+        let of = |count| follow(&evidence, &rounds[..count], &RULES, true).0[0];
+        (1..=rounds.len()).map(|count| [of(count).x, of(count).p]).collect()
+    }
+
+    fn check(found: &[[f64; 2]], expected: &[[f64; 2]]) {
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
+    }
+
+    /// Reference: an independent implementation in Python. The third report fails.
+    #[test]
+    fn levels_are_filtered_as_computed_elsewhere() {
+        let used = [0.0, 12.0, 12.0, 12.0];
+        let rounds: Vec<Seen> =
+            [75.0, 62.0, 95.0, 41.0].iter().zip(used).map(|(z, used)| seen(Some(*z), used, false)).collect();
+        check(
+            &energies(&rounds),
+            &[
+                [75.294_117_647_058_83, 23.529_411_764_705_888],
+                [62.615_901_455_767_08, 13.101_903_695_408_735],
+                [50.615_901_455_767_08, 17.101_903_695_408_737],
+                [39.707_158_298_719_91, 11.443_076_100_949_744],
+            ],
+        );
+        let (_, passes) = follow(&Evidence::default(), &rounds, &RULES, true);
+        assert!((passes.good - 7.0).abs() < 1e-12 && (passes.bad - 1.0).abs() < 1e-12, "{passes:?}");
+    }
+
+    #[test]
+    fn a_rest_fills_a_level_and_silence_leaves_it_as_expected() {
+        let rounds = [
+            seen(Some(75.0), 0.0, false),
+            seen(Some(62.0), 12.0, false),
+            seen(Some(99.0), 0.0, true),
+            seen(None, 9.0, false),
+            seen(Some(80.0), 9.0, false),
+        ];
+        check(
+            &energies(&rounds),
+            &[
+                [75.294_117_647_058_83, 23.529_411_764_705_888],
+                [62.615_901_455_767_08, 13.101_903_695_408_735],
+                [99.862_068_965_517_24, 3.448_275_862_068_965_3],
+                [90.862_068_965_517_24, 7.448_275_862_068_965],
+                [81.277_199_621_570_47, 7.852_412_488_174_077],
+            ],
+        );
+    }
+
+    /// Energy 63 and health 90 after a round: only energy is filled. Nothing is heard.
+    #[test]
+    fn where_a_rest_fills_one_level_the_other_stays() {
+        let rounds = [seen(Some(1.0), 0.0, false), seen(None, 17.0, true)];
+        let evidence = Evidence { rest_fills_one: true, ..Evidence::default() };
+        let (guesses, passes) = follow(&evidence, &rounds, &RULES, false);
+        let expected = [Guess { x: 100.0, p: 4.0 }, Guess { x: 90.0, p: 104.0 }];
+        assert_eq!((guesses, passes), (expected, Counts::default()));
+    }
+}

@@ -1,0 +1,90 @@
+//! `Hmm`: each robot is healthy or faulty, and a faulty one is slower than it says.
+//!
+//! A hidden Markov model with two states, by the forward algorithm (Rabiner 1989, *A Tutorial on Hidden
+//! Markov Models*). `b` is how likely a robot is faulty: 0.05 at first, from then on `b- = b + (1 - b) 0.02`
+//! a round (a fault stays); `b = b- f1 / (b- f1 + (1 - b-) f0)` with the normal densities `f0 = N(1, 0.15)`
+//! of a healthy and `f1 = N(0.5, 0.25)` of a faulty robot at `x`, the speed that was seen in terms of the
+//! speed that was said. One `x` a round: the median of the mates' ratings. Trust is `1 - b`.
+
+use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+
+use super::last_said::{last_said, last_said_with};
+use super::speeds::ratios;
+
+/// How likely a robot is faulty at first.
+const FIRST: f64 = 0.05;
+
+/// How likely a healthy robot breaks from one round to the next.
+const FAILS: f64 = 0.02;
+
+/// Mean and standard deviation of the speed seen, in terms of that said, of a healthy robot.
+const HEALTHY: [f64; 2] = [1.0, 0.15];
+
+/// The same of a faulty robot.
+const FAULTY: [f64; 2] = [0.5, 0.25];
+
+/// Believes robots that are as fast as they say; levels are those said last.
+#[derive(Debug, Clone, Copy)]
+pub struct Hmm;
+
+/// The registry's line.
+#[must_use]
+pub fn kind() -> EstimatorKind {
+    EstimatorKind::plain("Hmm", "trust by a hidden Markov model of speeds", Hmm)
+        .from_sources(env!("SOURCES_ESTIMATOR_HMM"))
+}
+
+impl Estimator for Hmm {
+    fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+        let Some(evidence) = &question.evidence else { return last_said(question) };
+        let trust =
+            ratios(question, evidence).into_iter().map(|ratios| (1.0 - faulty(&ratios)).clamp(0.0, 1.0));
+        last_said_with(question, trust)
+    }
+}
+
+/// How likely a robot with these speeds is faulty.
+fn faulty(ratios: &[f64]) -> f64 {
+    let mut b = FIRST;
+    for (round, x) in ratios.iter().enumerate() {
+        let before = if round == 0 { b } else { b + (1.0 - b) * FAILS };
+        // Only the ratio of the densities counts, and it is finite where each of them may be 0.
+        let odds = libm::exp(log_density(*x, FAULTY) - log_density(*x, HEALTHY)).min(f64::MAX);
+        b = if odds > 1.0 {
+            before / (before + (1.0 - before) / odds)
+        } else {
+            before * odds / (before * odds + 1.0 - before)
+        };
+    }
+    b
+}
+
+/// The logarithm of a normal density, up to a constant.
+fn log_density(x: f64, [mean, sd]: [f64; 2]) -> f64 {
+    let z = (x - mean) / sd;
+    -0.5 * z * z - libm::log(sd)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reference: an independent implementation in Python.
+    #[test]
+    fn faults_are_as_likely_as_computed_elsewhere() {
+        let ratios = [1.02, 0.95, 0.55, 0.6, 0.4];
+        let expected = [
+            0.003_649_257_174_261_793_7,
+            0.003_021_650_273_203_589_4,
+            0.554_397_494_244_641_1,
+            0.961_555_425_095_644_7,
+            0.999_976_288_128_446_5,
+        ];
+        for (count, expected) in (1..).zip(expected) {
+            let found = faulty(&ratios[..count]);
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
+        assert!((faulty(&[]) - 0.05).abs() < 1e-15);
+        assert!(faulty(&[1e9]) <= 1.0 && faulty(&[0.0; 100]) <= 1.0 && faulty(&[1.0; 100]) > 0.0);
+    }
+}

@@ -1,0 +1,73 @@
+//! `Kalman(q, r, gate)`: a Kalman filter with a gate for each level of each robot.
+//!
+//! A level is expected to fall by what the robot's fit group-mates said that they spent: `x- = x - used`,
+//! `P- = P + q`; after a rest `x- = 100`, `P- = q`; at first `x-` and `P-` are what the base expects. With
+//! `S = P- + r`, a report `z` fails if `(z - x-)^2 / S > gate`, and changes nothing then; else `K = P- / S`,
+//! `x = x- + K (z - x-)`, `P = (1 - K) P-`. Trust is the mean of a Beta distribution of passes and failures
+//! of both levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
+//! chi-square distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with
+//! Applications to Tracking and Navigation*, 5.4).
+
+use rne_core::estimate::as_said;
+use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+use serde::{Deserialize, Serialize};
+
+use super::filter::{Rules, follow};
+use super::rounds::rounds;
+
+/// Filters the levels of each robot; believes those whose reports pass.
+#[derive(Debug, Clone, Copy)]
+pub struct Kalman {
+    options: Options,
+}
+
+/// Options of `Kalman`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Variance by which a level becomes less sure in each round, in square percent points.
+    pub q: f64,
+    /// Variance of a report, in square percent points.
+    pub r: f64,
+    /// Greatest squared error of a report in terms of its variance; a report beyond it fails.
+    pub gate: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { q: 4.0, r: 25.0, gate: 6.6349 }
+    }
+}
+
+/// The registry's line.
+#[must_use]
+pub fn kind() -> EstimatorKind {
+    EstimatorKind::with_options("Kalman", "levels filtered by what group-mates spent", Kalman::new)
+        .from_sources(env!("SOURCES_ESTIMATOR_KALMAN"))
+}
+
+impl Kalman {
+    fn new(options: Options) -> Result<Self, String> {
+        let Options { q, r, gate } = options;
+        match [("q", q), ("r", r), ("gate", gate)].into_iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
+            Some((name, _)) => Err(format!("{name} must be a number above 0")),
+            None => Ok(Self { options }),
+        }
+    }
+}
+
+impl Estimator for Kalman {
+    fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+        let Some(evidence) = &question.evidence else { return as_said(question) };
+        let Options { q, r, gate } = self.options;
+        let rules = Rules { q, r, gate };
+        let of = |(member, seen): (_, Vec<_>)| {
+            let (guesses, passes) = follow(evidence, &seen, &rules, true);
+            let levels = guesses.map(|guess| guess.x.clamp(0.0, 100.0));
+            let estimate =
+                Estimate::of_levels(member, evidence, levels, guesses.map(|guess| guess.p.sqrt()))?;
+            Ok(Estimate { trust: passes.mean(), ..estimate })
+        };
+        question.members.iter().zip(rounds(question, evidence)).map(of).collect()
+    }
+}

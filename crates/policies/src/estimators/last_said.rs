@@ -1,0 +1,45 @@
+//! The members as they were said last: the levels of every estimator that judges trust alone.
+
+use rne_core::estimate::as_said;
+use rne_core::ids::place_of;
+use rne_core::{Estimate, Evidence, PolicyError, Question};
+
+/// The members as they were said last, with the standard deviations of their gauges, believed. A robot that
+/// was never heard has the deviations that the base expects.
+pub(super) fn last_said(question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+    let mut estimates = as_said(question)?;
+    let Some(evidence) = &question.evidence else { return Ok(estimates) };
+    let never_heard = evidence.initial.map_or([0.0; 2], |initial| initial.map(|expected| expected.sd));
+    for (estimate, last) in estimates.iter_mut().zip(last_reports(question, evidence)) {
+        estimate.sd = last.map_or(never_heard, |last| evidence.reports[last].sd);
+    }
+    Ok(estimates)
+}
+
+/// The same, each with its trust in the order of the members.
+pub(super) fn last_said_with(
+    question: &Question,
+    trust: impl IntoIterator<Item = f64>,
+) -> Result<Vec<Estimate>, PolicyError> {
+    let mut estimates = last_said(question)?;
+    estimates.iter_mut().zip(trust).for_each(|(estimate, trust)| estimate.trust = trust);
+    Ok(estimates)
+}
+
+/// For each member, the place of the report that was sent last, of those that were heard.
+fn last_reports(question: &Question, evidence: &Evidence) -> Vec<Option<usize>> {
+    let mut last: Vec<Option<usize>> = vec![None; question.members.len()];
+    for (place, report) in evidence.reports.iter().enumerate() {
+        let Some(member) = member_of(question, report.of) else { continue };
+        let is_older = |before: usize| report.sent_s < evidence.reports[before].sent_s;
+        if !last[member].is_some_and(is_older) {
+            last[member] = Some(place);
+        }
+    }
+    last
+}
+
+/// The place of a robot among the members.
+pub(super) fn member_of(question: &Question, robot: u32) -> Option<usize> {
+    place_of(&question.members, robot, |member| member.id)
+}

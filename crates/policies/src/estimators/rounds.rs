@@ -1,0 +1,90 @@
+//! What the base heard of each member, question by question: one report a round, and what its group-mates
+//! said that the round before cost them.
+
+use rne_core::said::is_after;
+use rne_core::{Evidence, Question, SaidRounds};
+
+use super::last_said::member_of;
+
+/// One member at the question of one round.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Seen {
+    /// What it said last, of what was heard since the question before and not sent before what was heard
+    /// then.
+    pub(super) said: Option<Said>,
+    /// The median of what its fit group-mates said that they spent in the round before, energy and health in
+    /// percent points; 0 where nobody can tell, as in the first round and for a robot that stayed at home.
+    pub(super) used: [f64; 2],
+    /// Whether it rested since the question before.
+    pub(super) rested: bool,
+}
+
+/// What a robot said.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Said {
+    /// Levels of energy and health, in percent.
+    pub(super) levels: [f64; 2],
+    /// Standard deviations of the gauges, in percent points.
+    pub(super) sd: [f64; 2],
+}
+
+/// For each member, its questions from the first since which the base knows it.
+pub(super) fn rounds(question: &Question, evidence: &Evidence) -> Vec<Vec<Seen>> {
+    let said = SaidRounds::new(evidence);
+    let count = question.history.len() + 1;
+    let mut seen = vec![vec![Seen::default(); count]; question.members.len()];
+    let mut takes_part = vec![vec![false; count]; question.members.len()];
+    for (before, round) in question.history.iter().enumerate() {
+        for used in said.used(round) {
+            let Some(member) = member_of(question, used.robot) else { continue };
+            let next = &mut seen[member][before + 1];
+            takes_part[member][before + 1] = true;
+            next.used = used.points.unwrap_or_default();
+            next.rested = said.entry(used.robot, round.round).is_some_and(|entry| entry.rested);
+        }
+    }
+    hear(question, evidence, &said, &mut seen);
+    for ((member, seen), takes_part) in question.members.iter().zip(&mut seen).zip(takes_part) {
+        stay_at_home(evidence, seen, &takes_part);
+        let since = evidence.known_since.get(&member.id).copied().unwrap_or(0);
+        let unknown = question.history.iter().filter(|round| round.round < since).count();
+        seen.drain(..unknown);
+    }
+    seen
+}
+
+/// Sorts the reports into the questions before which they were heard.
+fn hear(question: &Question, evidence: &Evidence, said: &SaidRounds<'_>, seen: &mut [Vec<Seen>]) {
+    let left_s = |number: usize| {
+        let round = &question.history[number];
+        let mut members = round.groups.iter().flat_map(|group| &group.members);
+        members.find_map(|member| Some(said.entry(member.id, round.round)?.left_s))
+    };
+    let mut starts: Vec<f64> =
+        (0..question.history.len()).map(|number| left_s(number).unwrap_or(0.0)).collect();
+    for number in 1..starts.len() {
+        starts[number] = starts[number].max(starts[number - 1]); // a round without a trace
+    }
+    let mut last_s = vec![f64::NEG_INFINITY; seen.len()];
+    for report in &evidence.reports {
+        let Some(member) = member_of(question, report.of) else { continue };
+        if report.sent_s < last_s[member] {
+            continue;
+        }
+        last_s[member] = report.sent_s;
+        let number = starts.partition_point(|start| is_after(report.heard_s, *start));
+        let levels = [report.energy_level, report.hp_level];
+        seen[member][number].said = Some(Said { levels, sd: report.sd });
+    }
+}
+
+/// A robot that was in no group of a round stayed at home. It rested if it had said that it is tired.
+fn stay_at_home(evidence: &Evidence, seen: &mut [Seen], takes_part: &[bool]) {
+    let is_tired =
+        |said: Said| said.levels[0] < evidence.energy_threshold || said.levels[1] < evidence.hp_threshold;
+    let mut last = None;
+    for (seen, takes_part) in seen.iter_mut().zip(takes_part) {
+        seen.rested |= !takes_part && last.is_some_and(is_tired);
+        last = seen.said.or(last);
+    }
+}

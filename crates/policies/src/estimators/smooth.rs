@@ -1,0 +1,92 @@
+//! `Smooth(alpha)`: the reports of a robot, smoothed exponentially.
+//!
+//! `x <- alpha r + (1 - alpha) x`, from the first report on, with one report `r` a round (Brown 1959,
+//! *Statistical Forecasting for Inventory Control*). The variance of independent reports goes along: `v <-
+//! alpha^2 v_r + (1 - alpha)^2 v`.
+
+use rne_core::estimate::as_said;
+use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+use serde::{Deserialize, Serialize};
+
+use super::rounds::{Said, Seen, rounds};
+
+/// Smooths the levels that each robot said; believes everybody. A robot that was never heard stays as the
+/// question has it. A smoothed level lags behind one that falls.
+#[derive(Debug, Clone, Copy)]
+pub struct Smooth {
+    options: Options,
+}
+
+/// Options of `Smooth`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Weight of the last report, above 0 and at most 1.
+    pub alpha: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { alpha: 0.4 }
+    }
+}
+
+/// The registry's line.
+#[must_use]
+pub fn kind() -> EstimatorKind {
+    EstimatorKind::with_options("Smooth", "reports of levels, smoothed exponentially", Smooth::new)
+        .from_sources(env!("SOURCES_ESTIMATOR_SMOOTH"))
+}
+
+impl Smooth {
+    fn new(options: Options) -> Result<Self, &'static str> {
+        let is_weight = options.alpha > 0.0 && options.alpha <= 1.0;
+        if is_weight { Ok(Self { options }) } else { Err("alpha must be above 0 and at most 1") }
+    }
+}
+
+impl Estimator for Smooth {
+    fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+        let mut estimates = as_said(question)?;
+        let Some(evidence) = &question.evidence else { return Ok(estimates) };
+        let all = estimates.iter_mut().zip(&question.members).zip(rounds(question, evidence));
+        for ((estimate, member), seen) in all {
+            if let Some(Said { levels, sd }) = smoothed(&seen, self.options.alpha) {
+                *estimate = Estimate::of_levels(member, evidence, levels, sd)?;
+            }
+        }
+        Ok(estimates)
+    }
+}
+
+fn smoothed(seen: &[Seen], alpha: f64) -> Option<Said> {
+    let mix = |before: Said, said: Said| Said {
+        levels: [0, 1].map(|level| alpha * said.levels[level] + (1.0 - alpha) * before.levels[level]),
+        sd: [0, 1].map(|level| {
+            let [new, old] = [alpha * said.sd[level], (1.0 - alpha) * before.sd[level]];
+            (new * new + old * old).sqrt()
+        }),
+    };
+    seen.iter().filter_map(|seen| seen.said).reduce(mix)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(reports: &[f64], alpha: f64) -> Said {
+        let said = |level: &f64| Some(Said { levels: [*level, 90.0], sd: [2.0, 0.0] });
+        let seen: Vec<Seen> =
+            reports.iter().map(|level| Seen { said: said(level), ..Seen::default() }).collect();
+        smoothed(&seen, alpha).unwrap()
+    }
+
+    /// Reference: an independent implementation in Python.
+    #[test]
+    fn reports_are_smoothed_as_computed_elsewhere() {
+        assert!((of(&[80.0, 70.0, 75.0, 40.0], 0.4).levels[0] / 61.359_999_999_999_99 - 1.0).abs() < 1e-9);
+        assert!((of(&[80.0, 70.0], 1.0).levels[0] - 70.0).abs() < 1e-12);
+        // 0.4^2 4 + 0.6^2 4 = 2.08
+        assert!((of(&[80.0, 70.0], 0.4).sd[0] - 2.08_f64.sqrt()).abs() < 1e-12);
+    }
+}

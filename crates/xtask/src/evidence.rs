@@ -1,0 +1,106 @@
+//! Evidence for questions about teams of any size, for measurements of estimators.
+
+use std::collections::BTreeMap;
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rne_core::{
+    Body, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome, NeedId,
+    Question, Rating, RobotRound, RoundOutcome, TaskId,
+};
+
+/// Reports of a robot in a round: one every ten seconds of 150.
+const REPORTS: u32 = 15;
+
+/// Length of a round, in seconds.
+const ROUND_S: f64 = 150.0;
+
+/// Mates that each robot rates in a round at most.
+const MATES: usize = 10;
+
+/// The question with seven rounds of evidence, asked in the eighth. Robots report every ten seconds and rate up
+/// to ten mates a round.
+#[must_use]
+pub fn with_evidence(question: Question) -> Question {
+    let mut draws = ChaCha8Rng::seed_from_u64(11);
+    let ids: Vec<u32> = question.members.iter().map(|member| member.id).collect();
+    let groups: Vec<Vec<u32>> =
+        [0, 1].map(|half| ids.iter().copied().filter(|id| id % 2 == half).collect()).into();
+    let mut evidence = Evidence {
+        energy_threshold: 20.0,
+        hp_threshold: 20.0,
+        bodies: question.members.iter().map(body).collect(),
+        initial: Some([Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }]),
+        ..Evidence::default()
+    };
+    for round in 1..8 {
+        for number in 0..REPORTS {
+            let reports = question.members.iter().map(|member| report(member, round, number, &mut draws));
+            evidence.reports.extend(reports);
+        }
+        for group in &groups {
+            for (place, by) in group.iter().enumerate() {
+                let mates = (1..group.len().min(MATES + 1)).map(|step| group[(place + step) % group.len()]);
+                evidence.ratings.extend(mates.map(|of| rating(*by, of, round, &mut draws)));
+            }
+        }
+        evidence.ledger.extend(ids.iter().map(|robot| trip(*robot, round)));
+    }
+    evidence.reports.extend(question.members.iter().map(|member| report(member, 8, 0, &mut draws)));
+    let history = (1..8).map(|round| outcome(round, &groups)).collect();
+    Question { round: 8, history, evidence: Some(evidence), may_idle: true, ..question }
+}
+
+fn body(member: &Member) -> Body {
+    let follows = |need: u16| {
+        let level = if need == 3 { Level::Energy } else { Level::Health };
+        LevelNeed {
+            need: NeedId(need),
+            level,
+            at_0: 0.0,
+            at_100: [100.0, 2.0, 5.0, 100.0][usize::from(need)],
+        }
+    };
+    let needs = (0..4).map(follows).collect();
+    let guides = member.role.index() == 2;
+    Body { robot: member.id, top_mps: 2.0, floor: 0.5, carries: member.role.index() == 0, guides, needs }
+}
+
+fn report(member: &Member, round: u32, number: u32, draws: &mut ChaCha8Rng) -> LevelReport {
+    let sent_s = ROUND_S * f64::from(round) + 10.0 * f64::from(number);
+    let spent = 6.0 * ((f64::from(round) - 8.0) + f64::from(number) / f64::from(REPORTS));
+    let [energy, hp] = [member.energy_level, member.hp_level].map(Option::unwrap_or_default);
+    let noise: f64 = draws.random_range(-2.0..2.0);
+    LevelReport {
+        of: member.id,
+        by: member.id,
+        round,
+        sent_s,
+        heard_s: sent_s,
+        energy_level: (energy - spent + noise).clamp(0.0, 100.0),
+        hp_level: (hp + noise).clamp(0.0, 100.0),
+        needs: BTreeMap::new(),
+        sd: [2.0; 2],
+    }
+}
+
+fn rating(by: u32, of: u32, round: u32, draws: &mut ChaCha8Rng) -> Rating {
+    Rating { by, of, round, looks: 30, speed_mps: draws.random_range(1.2..2.0), said_mps: 1.8 }
+}
+
+fn trip(robot: u32, round: u32) -> RobotRound {
+    let left_s = ROUND_S * f64::from(round);
+    let back_s = Some(left_s + ROUND_S - 10.0);
+    RobotRound { robot, round, left_s, back_s, rescued: 1, turned_back: false, rested: false, lost: false }
+}
+
+fn outcome(round: u32, groups: &[Vec<u32>]) -> RoundOutcome {
+    let of = |(task, ids): (u16, &Vec<u32>)| GroupOutcome {
+        task: TaskId(task),
+        rescued: ids.len() as u32,
+        energy: 6.0 * ids.len() as f64,
+        hp: 0.0,
+        members: ids.iter().map(|id| MemberOutcome { id: *id, ..MemberOutcome::default() }).collect(),
+    };
+    RoundOutcome { round, duration_s: ROUND_S - 10.0, groups: (0..).zip(groups).map(of).collect() }
+}
