@@ -2,6 +2,7 @@
 //! experiment has a [`Catalogue`] of them, including one for each of its tasks. `trials.csv`, comparisons,
 //! stopping rules, reports and calibrations look metrics up there.
 
+mod belief;
 mod values;
 
 use std::ops::Deref;
@@ -102,6 +103,37 @@ const DECLARATIONS: &[Declaration] = &[
         .means("Robots that ended with no HP."),
     whole("distance", "m", |r| Some(r.distance_m()))
         .means("Way travelled, summed over all robots."),
+];
+
+/// The metrics of trials in which the base goes by reports.
+#[rustfmt::skip]
+const OF_REPORTS: &[Declaration] = &[
+    whole("reports_heard", "", belief::reports_heard)
+        .means("Reports of levels that the base heard."),
+    whole("liars", "", belief::liars)
+        .means("Robots that told a lie, sooner or later."),
+    whole("level_mae", "%", belief::level_mae).lower()
+        .means("How far energy and health as they were believed are from the truth, on average over members and \
+            decisions: by the estimator of the policy, or else as said last."),
+    whole("level_crps", "%", belief::level_crps).lower()
+        .means("The continuous ranked probability score of the same levels, with their standard deviations."),
+    whole("tau_b", "", belief::rank_agreement).higher()
+        .means("Kendall's rank correlation (tau-b) of believed and true levels of the members, on average over \
+            levels and decisions."),
+    whole("trust_auc", "", belief::trust_auc).higher()
+        .means("How often an honest robot has more trust than a liar, ties by half; empty without an estimator, \
+            liars or honest robots."),
+    whole("trust_brier", "", belief::trust_brier).lower()
+        .means("The Brier score of trust as the probability that a robot is honest; empty without an estimator."),
+    whole("trust_log", "nats", belief::trust_log).lower()
+        .means("The logarithmic score of the same."),
+    whole("trust_ece", "", belief::trust_ece).lower()
+        .means("The expected calibration error of the same, in ten bins."),
+    whole("rounds_to_detect", "", belief::rounds_to_detect).lower()
+        .means("Rounds before a liar's trust falls below 0.5, on average over liars. One that is never detected \
+            counts with all rounds of the trial: the mean is censored there."),
+    whole("false_exclusions", "", belief::false_exclusions).lower()
+        .means("How often an honest robot was left at home by a policy with an estimator."),
 ];
 
 const fn whole(name: &'static str, unit: &'static str, value: Value) -> Declaration {
@@ -308,13 +340,18 @@ impl Deref for Catalogue {
 }
 
 impl Catalogue {
-    /// All metrics of a scenario: of its tasks, in its words.
+    /// All metrics of a scenario: of its tasks, in its words; those of reports where it has the section
+    /// `reports`, `medium` or `deceit`.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
-        Self::with(&task_names(scenario), &scenario.words)
+        let mut all = Self::with(&task_names(scenario), &scenario.words);
+        if scenario.reports.is_some() || scenario.medium.is_some() || !scenario.deceit.is_empty() {
+            all.metrics.extend(OF_REPORTS.iter().flat_map(|of| of.metrics(&[], &scenario.words)));
+        }
+        all
     }
 
-    /// All metrics for tasks of these names, in these words.
+    /// All metrics but those of reports, for tasks of these names, in these words.
     pub(crate) fn with(tasks: &[String], words: &Words) -> Self {
         let of = |declaration: &Declaration| declaration.metrics(tasks, words);
         Self { metrics: DECLARATIONS.iter().flat_map(of).collect() }

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::AssignmentError;
+use crate::estimate::Estimate;
 use crate::ids::{RoleId, TaskId};
 use crate::question::{GroupSizes, Question, SCHEMA_VERSION};
 use crate::trust::RelativeNeedsEntropy;
@@ -140,6 +141,10 @@ pub struct Decision {
     /// How the policy came to its answer.
     #[serde(default)]
     pub account: Account,
+    /// What was thought of each member, in the order of the members, where an estimator judged what robots
+    /// said.
+    #[serde(default)]
+    pub believed: Option<Vec<Estimate>>,
 }
 
 fn yes() -> bool {
@@ -283,6 +288,7 @@ impl Decision {
             gap_percent: None,
             alternatives: Vec::new(),
             account: Account::None,
+            believed: None,
         }
     }
 

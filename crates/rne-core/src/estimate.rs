@@ -1,6 +1,9 @@
 //! The interface of an estimator: what is true of each robot, how sure that is, and how far the robot is
 //! believed.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::error::PolicyError;
 use crate::evidence::{Body, Evidence};
 use crate::needs::NeedVector;
@@ -31,7 +34,8 @@ pub trait Estimator: Send + Sync {
 }
 
 /// What is thought of one member.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Estimate {
     /// Levels of energy and health, in percent.
     pub levels: [f64; 2],

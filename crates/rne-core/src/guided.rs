@@ -74,6 +74,7 @@ impl Session for GuidedSession {
             return Err(PolicyError::MayNotIdle { policy: self.label.clone() });
         }
         let estimates = self.estimator.estimate(question)?;
+        let believed = Some(estimates.clone());
         let judged = self.trust_use.judged(question, estimates)?;
         let mut decision = self.rule.decide(&Asked { question: &judged.question, ..*asked })?;
         let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
@@ -81,6 +82,6 @@ impl Session for GuidedSession {
             assignment.idle.extend(&judged.excluded);
             assignment.idle.sort_unstable();
         }
-        Ok(decision)
+        Ok(Decision { believed, ..decision })
     }
 }

@@ -7,7 +7,7 @@ use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
 use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
-use crate::model::Model;
+use crate::model::{Model, TelemetryModel};
 use crate::robot::{Condition, Robot};
 use crate::tally::Tally;
 use crate::telemetry::{Ends, Heard, Link, Telemetry, known, named, true_levels};
@@ -140,6 +140,8 @@ pub struct HeardRecord {
     pub extents: Vec<Extent>,
     /// The links on which anything was sent.
     pub links: Vec<LinkRecord>,
+    /// Ids of the robots that tell a lie, sooner or later.
+    pub liars: Vec<u32>,
 }
 
 /// A question with its history and its evidence, of which it was recorded without.
@@ -191,6 +193,7 @@ impl HeardRecord {
             evidence: known(model, evidence.clone()),
             extents: extents.clone(),
             links: telemetry.links().map(link).collect(),
+            liars: model.telemetry.as_ref().map(TelemetryModel::liars).unwrap_or_default(),
         }
     }
 }

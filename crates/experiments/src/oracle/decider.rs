@@ -157,6 +157,7 @@ impl Session for OracleSession {
         );
         let next = ranked.get(1).map(|next| Alternative { assignment: next.assignment.clone(), score: None });
         Ok(Decision {
+            believed: None,
             proven_optimal: survey.coverage == Coverage::All,
             alternatives: next.into_iter().collect(),
             account: Account::Text(account),

@@ -259,6 +259,7 @@ impl Search<'_> {
         self.account.suitability = suitability;
         let upper_bound = if self.proven_optimal { score } else { score.map(|_| self.upper_bound()) };
         Ok(Decision {
+            believed: None,
             schema_version: SCHEMA_VERSION,
             assignment,
             score,

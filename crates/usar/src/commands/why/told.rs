@@ -49,17 +49,26 @@ pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &Trial) -> Res
     Ok(())
 }
 
-/// What each robot had said of itself beside what was true, where the base had to go by reports.
+/// What each robot had said of itself, what the estimator believed, and what was true, where the base had to go by reports.
 fn said_and_true(out: &mut dyn Write, account: &Account) -> Result<(), Failure> {
     let Some(evidence) = &account.question.evidence else { return Ok(()) };
-    let mut table = headed(["robot", "role", "energy said", "true", "HP said", "true", "heard, s ago"]);
+    let believed = account.decision.believed.as_deref();
+    let mut names = vec!["robot", "role", "energy said", "believed", "true"];
+    names.extend(["HP said", "believed", "true", "trust", "heard, s ago"]);
+    names.retain(|name| believed.is_some() || !["believed", "trust"].contains(name));
+    let mut table = headed(names);
     let level = |level: Option<f64>| level.map_or("-".to_owned(), |level| format!("{level:.1}"));
-    for (said, is) in account.question.members.iter().zip(account.team) {
+    for (place, (said, is)) in account.question.members.iter().zip(account.team).enumerate() {
+        let thought = believed.and_then(|all| all.get(place));
+        let think = |at: usize| thought.map(|it| level(Some(it.levels[at])));
+        let trust = thought.map(|it| format!("{:.2}", it.trust));
         let last = evidence.reports.iter().rev().find(|report| report.of == said.id);
         let age = last.map_or("never".to_owned(), |last| format!("{:.1}", account.time_s - last.sent_s));
-        let levels = [said.energy_level, is.energy_level, said.hp_level, is.hp_level].map(level);
-        let cells = [said.id.to_string(), account.question.roles[said.role.index()].clone()];
-        table.add_row(cells.into_iter().chain(levels).chain([age]).map(|cell| right(&cell)));
+        let robot = [said.id.to_string(), account.question.roles[said.role.index()].clone()].map(Some);
+        let energy = [Some(level(said.energy_level)), think(0), Some(level(is.energy_level))];
+        let hp = [Some(level(said.hp_level)), think(1), Some(level(is.hp_level))];
+        let cells = robot.into_iter().chain(energy).chain(hp).chain([trust, Some(age)]).flatten();
+        table.add_row(cells.map(|cell| right(&cell)));
     }
     print_table(out, &table)?;
     Ok(writeln!(out)?)

@@ -1,0 +1,143 @@
+//! How far what was believed of robots was true, in the decisions of a trial in which the base went by
+//! reports: by the policy's estimator, or else as it was said last.
+
+use rne_core::{Estimate, Member};
+use statistics::scores::{Forecast, area_under_curve, brier, calibration_error, crps, log_score, tau_b};
+use usar_sim::record::{DecisionRecord, HeardRecord, TrialRecord};
+
+/// A robot with less trust than this counts as detected.
+const DETECTED_BELOW: f64 = 0.5;
+
+/// A level that was believed of a member, and what it was.
+#[derive(Debug, Clone, Copy)]
+struct Belief {
+    level: usize,
+    mean: f64,
+    sd: f64,
+    truth: f64,
+}
+
+/// Reports that the base heard.
+pub(super) fn reports_heard(record: &TrialRecord) -> Option<f64> {
+    heard(record).map(|heard| heard.evidence.reports.len() as f64)
+}
+
+/// Robots that told a lie.
+pub(super) fn liars(record: &TrialRecord) -> Option<f64> {
+    heard(record).map(|heard| heard.liars.len() as f64)
+}
+
+/// Mean distance of believed levels from the true ones.
+pub(super) fn level_mae(record: &TrialRecord) -> Option<f64> {
+    mean(beliefs(record).map(|it| (it.mean - it.truth).abs()))
+}
+
+/// Mean score of believed levels as normal forecasts.
+pub(super) fn level_crps(record: &TrialRecord) -> Option<f64> {
+    mean(beliefs(record).map(|it| crps(it.mean, it.sd, it.truth)))
+}
+
+/// Mean rank correlation of believed and true levels over decisions and levels.
+pub(super) fn rank_agreement(record: &TrialRecord) -> Option<f64> {
+    heard(record)?;
+    let of = |made: &DecisionRecord, level: usize| {
+        let all: Vec<Belief> = beliefs_of(made).filter(|it| it.level == level).collect();
+        let side = |value: fn(&Belief) -> f64| all.iter().map(value).collect::<Vec<_>>();
+        tau_b(&side(|it| it.mean), &side(|it| it.truth))
+    };
+    mean(record.decisions.iter().flat_map(|made| [of(made, 0), of(made, 1)]).flatten())
+}
+
+/// How often an honest robot is trusted more than a liar.
+pub(super) fn trust_auc(record: &TrialRecord) -> Option<f64> {
+    area_under_curve(&forecasts(record)?)
+}
+
+/// The Brier score of trust as the probability that a robot is honest.
+pub(super) fn trust_brier(record: &TrialRecord) -> Option<f64> {
+    brier(&forecasts(record)?)
+}
+
+/// The logarithmic score of the same.
+pub(super) fn trust_log(record: &TrialRecord) -> Option<f64> {
+    log_score(&forecasts(record)?)
+}
+
+/// The calibration error of the same.
+pub(super) fn trust_ece(record: &TrialRecord) -> Option<f64> {
+    calibration_error(&forecasts(record)?)
+}
+
+/// Mean number of rounds until a liar has little trust. One that is never detected counts with all rounds.
+pub(super) fn rounds_to_detect(record: &TrialRecord) -> Option<f64> {
+    let liars = &heard(record)?.liars;
+    judged(record).next()?;
+    let rounds = record.decisions.len();
+    let until = |liar: &u32| {
+        let is_detected = |made: &DecisionRecord| {
+            pairs(made).any(|(member, it)| member.id == *liar && it.trust < DETECTED_BELOW)
+        };
+        record.decisions.iter().position(is_detected).unwrap_or(rounds) as f64
+    };
+    mean(liars.iter().map(until))
+}
+
+/// How often an honest robot was left at home by a policy that judges robots.
+pub(super) fn false_exclusions(record: &TrialRecord) -> Option<f64> {
+    let liars = &heard(record)?.liars;
+    judged(record).next()?;
+    let of =
+        |made: &DecisionRecord| made.decision.assignment.idle.iter().filter(|id| !liars.contains(id)).count();
+    Some(judged(record).map(of).sum::<usize>() as f64)
+}
+
+fn heard(record: &TrialRecord) -> Option<&HeardRecord> {
+    record.heard.as_ref()
+}
+
+/// The decisions in which an estimator judged what robots said.
+fn judged(record: &TrialRecord) -> impl Iterator<Item = &DecisionRecord> {
+    record.decisions.iter().filter(|made| made.decision.believed.is_some())
+}
+
+/// The members of a decision with what was thought of them.
+fn pairs(made: &DecisionRecord) -> impl Iterator<Item = (&Member, &Estimate)> {
+    made.question.members.iter().zip(made.decision.believed.iter().flatten())
+}
+
+/// Trust as a forecast that a robot is honest, for each member of each decision.
+fn forecasts(record: &TrialRecord) -> Option<Vec<Forecast>> {
+    let liars = &heard(record)?.liars;
+    let of = |(member, it): (&Member, &Estimate)| Forecast {
+        probability: it.trust,
+        was_so: !liars.contains(&member.id),
+    };
+    let all: Vec<Forecast> = record.decisions.iter().flat_map(pairs).map(of).collect();
+    (!all.is_empty()).then_some(all)
+}
+
+/// All levels that were believed, in trials with reports.
+fn beliefs(record: &TrialRecord) -> impl Iterator<Item = Belief> {
+    let decisions = record.heard.iter().flat_map(|_| &record.decisions);
+    decisions.flat_map(beliefs_of)
+}
+
+fn beliefs_of(made: &DecisionRecord) -> impl Iterator<Item = Belief> {
+    let estimates = made.decision.believed.as_deref();
+    let members = made.question.members.iter().zip(made.team()).enumerate();
+    members.flat_map(move |(place, (said, is))| {
+        let said = [said.energy_level, said.hp_level];
+        let truth = [is.energy_level, is.hp_level];
+        let estimate = estimates.and_then(|all| all.get(place));
+        [0, 1].into_iter().filter_map(move |level| {
+            let mean = estimate.map_or(said[level], |it| Some(it.levels[level]))?;
+            let sd = estimate.map_or(0.0, |it| it.sd[level]);
+            Some(Belief { level, mean, sd, truth: truth[level]? })
+        })
+    })
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let all: Vec<f64> = values.collect();
+    (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+}
