@@ -19,6 +19,7 @@
 //! ```
 
 pub mod comparison;
+pub mod deceit;
 pub mod expect;
 pub mod experiment;
 pub mod explore;

@@ -1,5 +1,6 @@
 //! `usar study`: studies of scenarios and of decisions, and those of single papers.
 
+mod deceit;
 mod regret;
 mod room;
 mod sensitivity;
@@ -8,6 +9,7 @@ mod yang2021;
 use super::verbs;
 
 verbs!(Verb {
+    Deceit: deceit::Arguments,
     Regret: regret::Arguments,
     Room: room::Arguments,
     Sensitivity: sensitivity::Arguments,

@@ -1,0 +1,288 @@
+//! What lies cost each policy of a sweep: its room among honest robots, how many liars it bears, what an
+//! estimator costs where nobody lies, and how well estimators judge.
+//!
+//! The sweep has an axis of who lies, `[Count(0), Count(1), ...]`. All other axes together are the lie, or
+//! the world. The metric, its margin and the fair draw are those that the sweep file names.
+
+use std::collections::BTreeMap;
+
+use rne_core::arrow::Written;
+use statistics::breakdown::Breakdown;
+use statistics::{Moments, cautious};
+
+use crate::experiment::Experiment;
+use crate::sweep::folder::Folder;
+use crate::{Failure, refuse};
+
+/// Confidence of every interval and of every statement about a breakdown.
+const CONFIDENCE: f64 = 0.95;
+
+/// The policy whose trials are the draw where the sweep file names no baseline.
+const DRAW: &str = "RANDOM";
+
+/// Metrics of how well an estimator judges, in the order of the table.
+pub const ACCURACY: [&str; 5] = ["level_mae", "tau_b", "trust_auc", "trust_brier", "rounds_to_detect"];
+
+/// A difference of paired trials.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// Its mean; `None` without pairs.
+    pub mean: Option<f64>,
+    /// Its interval; `None` where too few pairs differ.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// A policy under one lie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Borne {
+    /// Label of the policy.
+    pub policy: String,
+    /// The lie: the values of the other axes.
+    pub lie: String,
+    /// The mean of the metric for each number of liars.
+    pub means: Vec<Option<f64>>,
+    /// How many liars it bears.
+    pub breakdown: Breakdown,
+}
+
+/// What a policy behind an estimator has or lacks beside the same policy without it, where nobody lies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Price {
+    /// Label of the policy with its estimator.
+    pub policy: String,
+    /// Label of the policy without.
+    pub rule: String,
+    /// The first minus the second.
+    pub difference: Difference,
+}
+
+/// How well an estimator judges under one lie, by the policy whose questions do not depend on it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// The estimator.
+    pub guide: String,
+    /// The lie.
+    pub lie: String,
+    /// Number of liars.
+    pub liars: u32,
+    /// Means of [`ACCURACY`] over trials.
+    pub values: Vec<Option<f64>>,
+}
+
+/// What lies cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deceit {
+    /// Name of the metric.
+    pub metric: String,
+    /// The largest difference that does not matter, if the sweep file names one.
+    pub margin: Option<f64>,
+    /// Label of the draw.
+    pub draw: String,
+    /// Numbers of liars.
+    pub counts: Vec<u32>,
+    /// Each policy under each lie, but the draw and those of which only the estimator is of interest.
+    pub borne: Vec<Borne>,
+    /// The price of each estimator.
+    pub prices: Vec<Price>,
+    /// How well estimators judge, from trials of DIS, which hears nothing that robots say: all estimators see
+    /// the same evidence.
+    pub judgements: Vec<Judgement>,
+}
+
+/// A sweep as rows of numbers of liars.
+struct Rows<'f> {
+    folder: &'f Folder,
+    metric: usize,
+    counts: Vec<u32>,
+    /// For each lie, the cases with each number of liars.
+    lies: Vec<Lie>,
+}
+
+struct Lie {
+    name: String,
+    cases: Vec<usize>,
+}
+
+impl Deceit {
+    /// Whether a sweep can be looked at in this way.
+    ///
+    /// # Errors
+    /// It has no axis of numbers of liars, or no draw.
+    pub fn check(experiment: &Experiment) -> Result<(), Failure> {
+        lies(experiment)?;
+        draw(experiment)?;
+        Ok(())
+    }
+
+    /// What the trials of a sweep show.
+    ///
+    /// # Errors
+    /// The sweep has no axis of numbers of liars, or no draw.
+    pub fn of(folder: &Folder) -> Result<Self, Failure> {
+        let experiment = folder.experiment();
+        let (counts, lies) = lies(experiment)?;
+        let metric = *experiment.metrics.chosen(&experiment.plan.primary)?.first().unwrap_or(&0);
+        let rows = Rows { folder, metric, counts, lies };
+        let of_draw = draw(experiment)?;
+        let name = &experiment.metrics[metric].name;
+        let mut margin = None;
+        for (of, value) in &experiment.plan.margins {
+            margin = margin.or((experiment.metrics.named(of)? == metric).then_some(*value));
+        }
+        let hears = |policy: &usize| deaf_guide(&experiment.policies[*policy].plain()).is_none();
+        let others = (0..experiment.policies.len()).filter(|policy| *policy != of_draw).filter(hears);
+        let pairs = others.flat_map(|policy| rows.lies.iter().map(move |lie| (policy, lie)));
+        Ok(Self {
+            metric: name.clone(),
+            margin,
+            borne: pairs.map(|(policy, lie)| rows.borne(policy, of_draw, lie, margin)).collect(),
+            prices: rows.prices(),
+            judgements: rows.judgements()?,
+            draw: rows.label(of_draw).to_owned(),
+            counts: rows.counts,
+        })
+    }
+}
+
+impl Rows<'_> {
+    fn label(&self, policy: usize) -> &str {
+        &self.folder.experiment().policies[policy].label
+    }
+
+    fn value(&self, case: usize, policy: usize, trial: u32) -> Option<f64> {
+        self.folder.value((case, policy, trial), self.metric)
+    }
+
+    fn trials(&self) -> impl Iterator<Item = u32> + use<> {
+        1..=self.folder.experiment().trials
+    }
+
+    fn borne(&self, policy: usize, draw: usize, lie: &Lie, margin: Option<f64>) -> Borne {
+        let difference =
+            |case: usize, trial: u32| Some(self.value(case, policy, trial)? - self.value(case, draw, trial)?);
+        // Differences of one seed stay together, so that only trials with all of them count.
+        let rows = self.trials().filter_map(|trial| {
+            lie.cases.iter().map(|case| difference(*case, trial)).collect::<Option<Vec<f64>>>()
+        });
+        let mut differences = vec![Vec::new(); lie.cases.len()];
+        for row in rows {
+            differences.iter_mut().zip(row).for_each(|(all, one)| all.push(one));
+        }
+        let mean = |case: &usize| {
+            let values = self.trials().filter_map(|trial| self.value(*case, policy, trial));
+            Moments::of(&values.collect::<Vec<_>>()).mean
+        };
+        Borne {
+            policy: self.label(policy).to_owned(),
+            lie: lie.name.clone(),
+            means: lie.cases.iter().map(mean).collect(),
+            breakdown: Breakdown::of(&differences, margin.unwrap_or(0.0), CONFIDENCE),
+        }
+    }
+
+    /// Each policy behind an estimator against the same one without, among honest robots of the first lie:
+    /// where nobody lies all lies are one.
+    fn prices(&self) -> Vec<Price> {
+        let policies = &self.folder.experiment().policies;
+        let Some(honest) = self.lies.first().and_then(|lie| lie.cases.first()) else { return Vec::new() };
+        let rule_of = |policy: usize| {
+            let written = policies[policy].plain();
+            let parts = Written::of(&written);
+            parts.guide?;
+            policies.iter().position(|other| other.plain() == parts.rule)
+        };
+        let price = |policy: usize| {
+            let rule = rule_of(policy)?;
+            let pair =
+                |trial: u32| Some(self.value(*honest, policy, trial)? - self.value(*honest, rule, trial)?);
+            let all: Vec<f64> = self.trials().filter_map(pair).collect();
+            let difference =
+                Difference { mean: Moments::of(&all).mean, interval: cautious::interval(&all, CONFIDENCE) };
+            let [policy, rule] = [policy, rule].map(|it| self.label(it).to_owned());
+            Some(Price { policy, rule, difference })
+        };
+        (0..policies.len()).filter_map(price).collect()
+    }
+
+    fn judgements(&self) -> Result<Vec<Judgement>, Failure> {
+        let experiment = self.folder.experiment();
+        let places: Vec<usize> =
+            ACCURACY.iter().map(|name| experiment.metrics.named(name)).collect::<Result<_, _>>()?;
+        let mut judgements = Vec::new();
+        for (policy, spec) in experiment.policies.iter().enumerate() {
+            let written = spec.plain();
+            let Some(guide) = deaf_guide(&written) else { continue };
+            for lie in &self.lies {
+                for (case, liars) in lie.cases.iter().zip(&self.counts) {
+                    let mean = |metric: &usize| {
+                        let values = self
+                            .trials()
+                            .filter_map(|trial| self.folder.value((*case, policy, trial), *metric));
+                        Moments::of(&values.collect::<Vec<_>>()).mean
+                    };
+                    let (guide, lie) = (guide.to_owned(), lie.name.clone());
+                    let values = places.iter().map(mean).collect();
+                    judgements.push(Judgement { guide, lie, liars: *liars, values });
+                }
+            }
+        }
+        Ok(judgements)
+    }
+}
+
+/// The estimator behind a policy that hears nothing of what robots say: it changes no decision.
+fn deaf_guide(policy: &str) -> Option<&str> {
+    match Written::of(policy) {
+        Written { rule: "DIS", guide } => guide,
+        _ => None,
+    }
+}
+
+/// The place of the draw among the policies.
+fn draw(experiment: &Experiment) -> Result<usize, Failure> {
+    let draw = experiment.plan.baseline.as_deref().unwrap_or(DRAW);
+    match experiment.policies.iter().position(|policy| policy.label == draw) {
+        Some(place) => Ok(place),
+        None => refuse!("policies must have {draw}, the fair draw"),
+    }
+}
+
+/// The numbers of liars, and for each lie its cases in the order of the numbers.
+fn lies(experiment: &Experiment) -> Result<(Vec<u32>, Vec<Lie>), Failure> {
+    let counts = |values: &[String]| values.iter().map(|value| count(value)).collect::<Option<Vec<u32>>>();
+    let mut axes = experiment.axes.iter().enumerate();
+    let Some((axis, counts)) = axes.find_map(|(place, axis)| Some((place, counts(&axis.values)?))) else {
+        refuse!("must have an axis of who lies, such as \"deceit[0].who\": [Count(0), Count(1), Count(2)]");
+    };
+    let mut order: Vec<usize> = (0..counts.len()).collect();
+    order.sort_by_key(|place| counts[*place]);
+    let mut lies: BTreeMap<usize, Lie> = BTreeMap::new();
+    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    for (number, case) in experiment.cases.iter().enumerate() {
+        let others = case.values.iter().enumerate().filter(|(place, _)| *place != axis);
+        let name = others.map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(", ");
+        let next = places.len();
+        let place = *places.entry(name.clone()).or_insert(next);
+        let lie = lies.entry(place).or_insert_with(|| Lie { name, cases: vec![0; counts.len()] });
+        let of = experiment.axes[axis].values.iter().position(|value| *value == case.values[axis]);
+        if let Some(at) = of.and_then(|of| order.iter().position(|place| *place == of)) {
+            lie.cases[at] = number;
+        }
+    }
+    Ok((order.into_iter().map(|place| counts[place]).collect(), lies.into_values().collect()))
+}
+
+/// The number in `Count(3)`.
+fn count(value: &str) -> Option<u32> {
+    value.trim().strip_prefix("Count(")?.strip_suffix(')')?.trim().parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_liars_are_read() {
+        assert_eq!(["Count(0)", " Count( 12 )", "Share(0.5)"].map(count), [Some(0), Some(12), None]);
+    }
+}

@@ -1,0 +1,145 @@
+//! `usar study deceit`: what lies cost each policy, how many liars it bears, and how well estimators judge.
+
+use std::sync::Arc;
+
+use experiments::comparison::{digits, short};
+use experiments::deceit::{ACCURACY, Borne, Deceit, Difference};
+use experiments::experiment::{Experiment, Overrides};
+use experiments::sweep::folder::{Folder, Opening};
+use reports::table::{headed, right};
+use serde_json::json;
+
+use crate::arguments::{ProgressArguments, ShownArguments};
+use crate::library;
+use crate::prelude::*;
+
+/// How many liars does a policy bear? Rules, estimators and uses of trust against lies
+#[derive(Debug, Args)]
+#[command(after_help = "\
+FILE is a sweep file with an axis of who lies, such as \"deceit[0].who\": [Count(0), Count(1), Count(2)]; all \
+other axes together are the lie, or the world. Its baseline is the fair draw, its first primary metric is \
+judged, and its margin is the largest difference that does not matter. Policies stand behind estimators as \
+`HP_DIS <- Kalman | Exclude`.
+
+A policy breaks down between two numbers of liars: up to the first it is shown to be better than the draw, \
+from the second on it is shown not to be. Both hold together at 95 %. Where a policy is not shown to be \
+better among honest robots, there is nothing to break down. How well estimators judge is told by policies \
+`DIS <- ESTIMATOR`: DIS hears nothing, so that all estimators have the same evidence.
+
+The folder is that of a sweep, with all of its tables; an interrupted study resumes.
+
+Examples:
+  usar study deceit scenarios/sweeps/trust-tunnel.ron
+  usar study deceit scenarios/sweeps/trust-tunnel.ron --json > tunnel.json")]
+pub(crate) struct Arguments {
+    /// Sweep file (RON)
+    #[arg(value_name = "FILE", value_parser = library::path)]
+    file: PathBuf,
+    /// File or folder to write [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    progress: ProgressArguments,
+    #[command(flatten)]
+    shown: ShownArguments,
+}
+
+impl Arguments {
+    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        let experiment = Experiment::load(&self.file, &Overrides::default(), registry)?;
+        Deceit::check(&experiment).map_err(Failure::input_at(self.file.display()))?;
+        let named = Path::new("results").join(&experiment.name);
+        let place = self.out.clone().unwrap_or(named);
+        let note = &mut |note: String| tell(format_args!("note: {note}"));
+        let mut folder = Folder::open(&place, Arc::new(experiment), Opening::default(), note)?;
+        self.progress.run_missing(&mut folder, None, None)?;
+        folder.finish(&STOP)?;
+        let found = Deceit::of(&folder)?;
+        if self.shown.is_json() {
+            return print_json(&as_json(&found));
+        }
+        let trials = folder.experiment().trials;
+        let margin = found.margin.map_or("0".to_owned(), short);
+        writeln!(out, "{}: {trials} pairs by seed, minus {}; margin {margin}", found.metric, found.draw)?;
+        print_borne(out, &found)?;
+        print_prices(out, &found)?;
+        print_judgements(out, &found)
+    }
+}
+
+fn print_borne(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
+    writeln!(out, "\nMeans by number of liars, and how many liars a policy bears")?;
+    let counts = found.counts.iter().map(u32::to_string);
+    let names = ["policy", "lie"].map(str::to_owned).into_iter().chain(counts);
+    let mut table = headed(names.chain(["breaks down".to_owned()]));
+    for one in &found.borne {
+        let means = one.means.iter().map(|mean| right(&mean.map_or("-".to_owned(), |it| digits(it, 4))));
+        let cells = [one.policy.as_str().into(), one.lie.as_str().into()];
+        table.add_row(cells.into_iter().chain(means).chain([in_words(one, &found.counts).into()]));
+    }
+    print_table(out, &table)
+}
+
+/// The breakdown in words: "between 2 and 5 of 6".
+fn in_words(one: &Borne, counts: &[u32]) -> String {
+    let all = counts.last().copied().unwrap_or_default();
+    let at = |place: usize| counts.get(place).copied().unwrap_or_default();
+    match (one.breakdown.safe, one.breakdown.broken) {
+        (None, _) => "no room shown".to_owned(),
+        (Some(safe), Some(broken)) => format!("between {} and {} of {all}", at(safe), at(broken)),
+        (Some(safe), None) => format!("above {} of {all}, or never", at(safe)),
+    }
+}
+
+fn print_prices(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
+    if found.prices.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nThe price where nobody lies: a policy with its estimator minus the same without")?;
+    let mut table = headed(["policy", "difference", "95 % interval"]);
+    for price in &found.prices {
+        let Difference { mean, interval } = &price.difference;
+        let interval = interval.map_or("-".to_owned(), |[a, b]| format!("{} to {}", short(a), short(b)));
+        let mean = mean.map_or("-".to_owned(), short);
+        table.add_row([price.policy.as_str().into(), right(&mean), right(&interval)]);
+    }
+    print_table(out, &table)
+}
+
+fn print_judgements(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
+    if found.judgements.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\nHow well estimators judge the same evidence")?;
+    let mut table = headed(["estimator", "lie", "liars"].into_iter().chain(ACCURACY));
+    for one in &found.judgements {
+        let values = one.values.iter().map(|value| right(&value.map_or("-".to_owned(), |it| digits(it, 3))));
+        let cells = [one.guide.as_str().into(), one.lie.as_str().into(), right(&one.liars.to_string())];
+        table.add_row(cells.into_iter().chain(values));
+    }
+    print_table(out, &table)
+}
+
+fn as_json(found: &Deceit) -> serde_json::Value {
+    let borne = found.borne.iter().map(|one| {
+        json!({"policy": one.policy, "lie": one.lie, "means": one.means, "intervals": one.breakdown.intervals,
+            "has_room": one.breakdown.has_room,
+            "safe": one.breakdown.safe.map(|at| found.counts[at]),
+            "broken": one.breakdown.broken.map(|at| found.counts[at])})
+    });
+    let prices = found.prices.iter().map(|price| {
+        json!({"policy": price.policy, "rule": price.rule, "difference": price.difference.mean,
+            "interval": price.difference.interval})
+    });
+    let judgements = found.judgements.iter().map(|one| {
+        let values: serde_json::Map<String, serde_json::Value> = ACCURACY
+            .iter()
+            .zip(&one.values)
+            .map(|(name, value)| ((*name).to_owned(), json!(value)))
+            .collect();
+        json!({"estimator": one.guide, "lie": one.lie, "liars": one.liars, "values": values})
+    });
+    json!({"metric": found.metric, "margin": found.margin, "draw": found.draw, "liars": found.counts,
+        "policies": borne.collect::<Vec<_>>(), "prices": prices.collect::<Vec<_>>(),
+        "judgements": judgements.collect::<Vec<_>>()})
+}
