@@ -100,3 +100,55 @@ fn a_policy_behind_an_estimator_answers_a_question_with_evidence() {
         "mission.may_idle must be true for HP_DIS <- Beta | Exclude, which leaves robots idle, found false",
     );
 }
+
+/// Two liars of four say 100 % health: `Truth` knows better, reports alone do not.
+#[test]
+fn a_study_of_deceit_tells_what_lies_cost_and_how_well_estimators_judge() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("two.ron"), TWO).unwrap();
+    let sweep = "(name: \"lied\", scenario: \"two.ron\", trials: 12, baseline: \"RANDOM\", keep: Trials,
+    policies: [\"RANDOM\", \"DIS <- Truth\", \"DIS <- Beta\", \"HP_DIS\", \"sure=HP_DIS <- Truth\"],
+    set: {\"deceit\": [(who: Count(0), lie: Exaggerate(by: 1), on: [Hp])]},
+    axes: {\"deceit[0].who\": [Count(2), Count(0)]}, primary: [\"rescuees.total\"],
+)";
+    std::fs::write(here.join("lied.ron"), sweep).unwrap();
+    let text = succeeds(&usar(here, "study deceit lied.ron --quiet"));
+    for part in ["rescuees.total: 12 pairs by seed, minus RANDOM; margin 0", "breaks down", "The price where"]
+    {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let json = succeeds(&usar(here, "study deceit lied.ron --quiet --json"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["liars"], serde_json::json!([0, 2]));
+    let policies = json["policies"].as_array().unwrap();
+    let mean = |policy: usize, liars: usize| policies[policy]["means"][liars].as_f64().unwrap();
+    assert_eq!(policies.iter().map(|one| &one["policy"]).collect::<Vec<_>>(), ["HP_DIS", "sure"]);
+    assert!((mean(1, 0) - mean(1, 1)).abs() < 1e-9, "who knows the truth hears no lie");
+    assert!((mean(0, 0) - mean(1, 0)).abs() < 1e-9 && (mean(0, 1) - mean(1, 1)).abs() > 0.1, "{json}");
+    assert_eq!(
+        (&json["prices"][0]["policy"], &json["prices"][0]["difference"]),
+        (&"sure".into(), &0.0.into())
+    );
+    let judged = json["judgements"].as_array().unwrap();
+    let value = |row: usize, name: &str| judged[row]["values"][name].as_f64();
+    let rows: Vec<(&str, u64)> = judged
+        .iter()
+        .map(|row| (row["estimator"].as_str().unwrap(), row["liars"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(rows, [("Truth", 0), ("Truth", 2), ("Beta", 0), ("Beta", 2)]);
+    assert_eq!((value(1, "level_mae"), value(2, "level_mae")), (Some(0.0), Some(0.0)));
+    assert!(value(3, "level_mae").unwrap() > 3.0 && value(1, "tau_b").unwrap() > 0.999, "{json}");
+    assert_eq!(
+        (value(2, "trust_auc"), value(1, "trust_auc")),
+        (None, Some(0.5)),
+        "nobody lies; all are believed"
+    );
+    assert!(value(3, "trust_auc").unwrap() > 0.6 && value(3, "rounds_to_detect").is_some(), "{json}");
+    let other = sweep.replace("\"deceit[0].who\": [Count(2), Count(0)]", "\"dt_s\": [0.02, 0.04]");
+    std::fs::write(here.join("other.ron"), other).unwrap();
+    let refused = usar(here, "study deceit other.ron --out nowhere");
+    let stderr = String::from_utf8_lossy(&refused.stderr);
+    assert!(stderr.contains("other.ron: must have an axis of who lies, such as"), "{stderr}");
+    assert!(refused.status.code() == Some(2) && !here.join("nowhere").exists());
+}
