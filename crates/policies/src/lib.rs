@@ -46,7 +46,7 @@ struct Readme;
 #[cfg(test)]
 mod tests {
     use rne_core::RegistryError;
-    use rne_core::error::Entry;
+    use rne_core::registry_error::Entry;
 
     use super::*;
 

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::error::RegistryError;
 use crate::guided::Guided;
 use crate::made::{Made, MadePolicy};
 use crate::registry::{Registry, parts};
+use crate::registry_error::RegistryError;
 use crate::session::Session;
 use crate::trust_use::TrustUse;
 

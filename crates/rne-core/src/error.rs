@@ -3,8 +3,6 @@
 
 use thiserror::Error;
 
-pub use crate::registry_error::{Entry, RegistryError};
-
 /// A needs table, weight vector or distribution for which the mathematics is not defined.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NeedsError {

@@ -39,7 +39,7 @@ pub mod nested;
 pub mod policy;
 pub mod question;
 pub mod registry;
-mod registry_error;
+pub mod registry_error;
 pub mod said;
 pub mod schema;
 pub mod session;
@@ -50,7 +50,7 @@ pub use decision::{Account, Alternative, Assignment, Decision};
 pub use divergence::{
     jeffreys, jensen_shannon, mutual_information, relative_entropy, relative_entropy_by_need,
 };
-pub use error::{AssignmentError, NeedsError, PolicyError, QuestionError, RegistryError};
+pub use error::{AssignmentError, NeedsError, PolicyError, QuestionError};
 pub use estimate::{Estimate, Estimator};
 pub use evidence::{
     Body, Evidence, Expected, Extent, Level, LevelNeed, LevelReport, Rating, RobotRound, TrueLevels,
@@ -63,6 +63,7 @@ pub use needs::{NeedDistribution, NeedVector, NeedWeights};
 pub use policy::Policy;
 pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
 pub use registry::{EstimatorKind, Kind, MeasureKind, PolicyKind, Registry};
+pub use registry_error::RegistryError;
 pub use said::{EnergyOutcome, SaidRounds, Used};
 pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};
 pub use trust::{LogBase, RelativeNeedsEntropy};

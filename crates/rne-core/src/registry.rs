@@ -9,11 +9,11 @@ use ron_tree::{Node, Problem};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::error::{Entry, RegistryError};
 use crate::estimate::Estimator;
 use crate::made::{Made, MadeEstimator, MadeMeasure, MadePolicy};
 use crate::measure::TrustMeasure;
 use crate::policy::Policy;
+use crate::registry_error::{Entry, RegistryError};
 use crate::session::{Absent, Driver, Pure};
 
 /// Policies, trust measures and estimators by name.
