@@ -14,6 +14,13 @@ const TWO: &str = "(name: \"two\", duration_s: 120.0, dt_s: 0.02, arena_m: (60.0
     mission: (hp_threshold: 0.0, health_floor: 0.1),
 )";
 
+/// A world in which none or two of four robots say 100 % health.
+const LIED: &str = "(name: \"lied\", scenario: \"two.ron\", trials: 12, baseline: \"RANDOM\", keep: Trials,
+    policies: [\"RANDOM\", \"DIS <- Truth\", \"DIS <- Beta\", \"HP_DIS\", \"sure=HP_DIS <- Truth\"],
+    set: {\"deceit\": [(who: Count(0), lie: Exaggerate(by: 1), on: [Hp])]},
+    axes: {\"deceit[0].who\": [Count(2), Count(0)]}, primary: [\"rescuees.total\"],
+)";
+
 #[test]
 fn the_room_of_a_world_is_that_of_its_trials() {
     let folder = tempfile::tempdir().unwrap();
@@ -107,12 +114,7 @@ fn a_study_of_deceit_tells_what_lies_cost_and_how_well_estimators_judge() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     std::fs::write(here.join("two.ron"), TWO).unwrap();
-    let sweep = "(name: \"lied\", scenario: \"two.ron\", trials: 12, baseline: \"RANDOM\", keep: Trials,
-    policies: [\"RANDOM\", \"DIS <- Truth\", \"DIS <- Beta\", \"HP_DIS\", \"sure=HP_DIS <- Truth\"],
-    set: {\"deceit\": [(who: Count(0), lie: Exaggerate(by: 1), on: [Hp])]},
-    axes: {\"deceit[0].who\": [Count(2), Count(0)]}, primary: [\"rescuees.total\"],
-)";
-    std::fs::write(here.join("lied.ron"), sweep).unwrap();
+    std::fs::write(here.join("lied.ron"), LIED).unwrap();
     let text = succeeds(&usar(here, "study deceit lied.ron --quiet"));
     for part in ["rescuees.total: 12 pairs by seed, minus RANDOM; margin 0", "breaks down", "The price where"]
     {
@@ -145,10 +147,46 @@ fn a_study_of_deceit_tells_what_lies_cost_and_how_well_estimators_judge() {
         "nobody lies; all are believed"
     );
     assert!(value(3, "trust_auc").unwrap() > 0.6 && value(3, "rounds_to_detect").is_some(), "{json}");
-    let other = sweep.replace("\"deceit[0].who\": [Count(2), Count(0)]", "\"dt_s\": [0.02, 0.04]");
+    let other = LIED.replace("\"deceit[0].who\": [Count(2), Count(0)]", "\"dt_s\": [0.02, 0.04]");
     std::fs::write(here.join("other.ron"), other).unwrap();
     let refused = usar(here, "study deceit other.ron --out nowhere");
     let stderr = String::from_utf8_lossy(&refused.stderr);
     assert!(stderr.contains("other.ron: must have an axis of who lies, such as"), "{stderr}");
     assert!(refused.status.code() == Some(2) && !here.join("nowhere").exists());
+}
+
+/// Who knows the truth decides the same whoever lies; the mean of all assignments is worth 0 by itself.
+#[test]
+fn policies_are_judged_by_the_outcomes_of_all_assignments() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("two.ron"), TWO).unwrap();
+    std::fs::write(here.join("lied.ron"), LIED).unwrap();
+    let all = "(name: \"all\", scenario: \"two.ron\", policies: [\"DIS\"], trials: 4)";
+    std::fs::write(here.join("all.ron"), all).unwrap();
+    succeeds(&usar(here, "study regret all.ron --quiet"));
+    let command = "study deceit lied.ron --replay results/all --quiet";
+    let text = succeeds(&usar(here, command));
+    assert!(text.contains("rescuees per minute (1/min): 4 trials that DIS decided"), "{text}");
+    let json = succeeds(&usar(here, &format!("{command} --json")[..]));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let row = |policy: &str| json["policies"].as_array().unwrap().iter().find(|row| row["policy"] == policy);
+    let mean =
+        |policy: &str, liars: usize| row(policy).unwrap()["differences"][liars]["mean"].as_f64().unwrap();
+    assert!((mean("sure", 0) - mean("sure", 1)).abs() < 1e-12, "{json}");
+    assert!((mean("HP_DIS", 0) - mean("sure", 0)).abs() < 1e-12, "nobody lies");
+    assert!((mean("HP_DIS", 1) - mean("sure", 1)).abs() > 1e-6, "{json}");
+    assert!((mean("DIS <- Beta", 0) - mean("DIS <- Truth", 1)).abs() < 1e-12, "DIS hears nothing");
+    let mut summary = csv::Reader::from_path(here.join("results/all/regret.csv")).unwrap();
+    let header = summary.headers().unwrap().clone();
+    let place = |name: &str| header.iter().position(|known| known == name).unwrap();
+    let [metric, trial, value, of_all] = ["metric", "trial", "value", "mean"].map(place);
+    let mut of_trials = std::collections::BTreeMap::<String, Vec<f64>>::new();
+    for row in summary.records().map(Result::unwrap).filter(|row| &row[metric] == "rescue_rate.total") {
+        let difference = row[value].parse::<f64>().unwrap() - row[of_all].parse::<f64>().unwrap();
+        of_trials.entry(row[trial].to_owned()).or_default().push(difference);
+    }
+    let means = of_trials.values().map(|all| all.iter().sum::<f64>() / all.len() as f64);
+    let expected = means.sum::<f64>() / of_trials.len() as f64;
+    assert!((mean("DIS <- Beta", 0) - expected).abs() < 1e-9, "as `usar study regret` has it: {expected}");
 }

@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use experiments::comparison::{digits, short};
-use experiments::deceit::{ACCURACY, Borne, Deceit, Difference};
+use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay, Worth};
 use experiments::experiment::{Experiment, Overrides};
+use experiments::oracle::Objective;
+use experiments::regret::StudyFolder;
 use experiments::sweep::folder::{Folder, Opening};
 use reports::table::{headed, right};
 use serde_json::json;
@@ -26,11 +28,17 @@ from the second on it is shown not to be. Both hold together at 95 %. Where a po
 better among honest robots, there is nothing to break down. How well estimators judge is told by policies \
 `DIS <- ESTIMATOR`: DIS hears nothing, so that all estimators have the same evidence.
 
+With --replay, policies are asked at the decisions of trials that DIS decided, and each answer is worth what \
+came of it when the study of regret played all assignments to the end of the round. It is a filter: no decision \
+changes the rounds after it, and a policy that leaves robots idle has no value.
+
 The folder is that of a sweep, with all of its tables; an interrupted study resumes.
 
 Examples:
   usar study deceit scenarios/sweeps/trust-tunnel.ron
-  usar study deceit scenarios/sweeps/trust-tunnel.ron --json > tunnel.json")]
+  usar study deceit scenarios/sweeps/trust-tunnel.ron --json > tunnel.json
+  usar study regret scenarios/sweeps/trust-tunnel-regret.ron
+  usar study deceit scenarios/sweeps/trust-tunnel.ron --replay results/trust-tunnel-regret")]
 pub(crate) struct Arguments {
     /// Sweep file (RON)
     #[arg(value_name = "FILE", value_parser = library::path)]
@@ -38,6 +46,9 @@ pub(crate) struct Arguments {
     /// File or folder to write [default: results/NAME]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Judge the policies by the outcomes of this folder of `usar study regret`, without trials of their own
+    #[arg(long, value_name = "DIR")]
+    replay: Option<PathBuf>,
     #[command(flatten)]
     progress: ProgressArguments,
     #[command(flatten)]
@@ -48,6 +59,9 @@ impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         let experiment = Experiment::load(&self.file, &Overrides::default(), registry)?;
         Deceit::check(&experiment).map_err(Failure::input_at(self.file.display()))?;
+        if let Some(folder) = &self.replay {
+            return self.replayed(folder, &experiment, out);
+        }
         let named = Path::new("results").join(&experiment.name);
         let place = self.out.clone().unwrap_or(named);
         let note = &mut |note: String| tell(format_args!("note: {note}"));
@@ -64,6 +78,35 @@ impl Arguments {
         print_borne(out, &found)?;
         print_prices(out, &found)?;
         print_judgements(out, &found)
+    }
+}
+
+impl Arguments {
+    fn replayed(&self, folder: &Path, experiment: &Experiment, out: &mut dyn Write) -> Result<(), Failure> {
+        let study = StudyFolder::read(folder)?;
+        let objective = Objective::parse("rescue_rate", &study.study.tasks).map_err(Failure::run)?;
+        let found = self.progress.work(study.trials.len() * experiment.cases.len(), "trials", |bar| {
+            Replay::of(experiment, &study, &objective, &STOP, || bar.inc(1))
+        })??;
+        if self.shown.is_json() {
+            let worth = |one: &Worth| {
+                let of = |it: &Difference| json!({"mean": it.mean, "interval": it.interval});
+                let differences: Vec<_> = one.differences.iter().map(of).collect();
+                json!({"policy": one.policy, "lie": one.lie, "differences": differences})
+            };
+            let worths: Vec<_> = found.worths.iter().map(worth).collect();
+            return print_json(&json!({"objective": found.objective, "liars": found.counts,
+                "trials": found.trials, "policies": worths}));
+        }
+        let words = "minus the mean of all assignments, by number of liars";
+        writeln!(out, "{}: {} trials that DIS decided; {words}", objective.title(), found.trials)?;
+        let names = ["policy", "lie"].map(str::to_owned).into_iter();
+        let mut table = headed(names.chain(found.counts.iter().map(u32::to_string)));
+        for one in &found.worths {
+            let cells = one.differences.iter().map(|it| right(&it.mean.map_or("-".to_owned(), short)));
+            table.add_row([one.policy.as_str().into(), one.lie.as_str().into()].into_iter().chain(cells));
+        }
+        print_table(out, &table)
     }
 }
 

@@ -1,36 +1,16 @@
-//! What lies cost each policy of a sweep: its room among honest robots, how many liars it bears, what an
-//! estimator costs where nobody lies, and how well estimators judge.
-//!
-//! The sweep has an axis of who lies, `[Count(0), Count(1), ...]`. All other axes together are the lie, or
-//! the world. The metric, its margin and the fair draw are those that the sweep file names.
-
-use std::collections::BTreeMap;
+//! What the trials of a sweep of lies show.
 
 use rne_core::arrow::Written;
 use statistics::breakdown::Breakdown;
 use statistics::{Moments, cautious};
 
+use super::cells::{CONFIDENCE, Difference, Lie, deaf_guide, draw, lies};
+use crate::Failure;
 use crate::experiment::Experiment;
 use crate::sweep::folder::Folder;
-use crate::{Failure, refuse};
-
-/// Confidence of every interval and of every statement about a breakdown.
-const CONFIDENCE: f64 = 0.95;
-
-/// The policy whose trials are the draw where the sweep file names no baseline.
-const DRAW: &str = "RANDOM";
 
 /// Metrics of how well an estimator judges, in the order of the table.
 pub const ACCURACY: [&str; 5] = ["level_mae", "tau_b", "trust_auc", "trust_brier", "rounds_to_detect"];
-
-/// A difference of paired trials.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Difference {
-    /// Its mean; `None` without pairs.
-    pub mean: Option<f64>,
-    /// Its interval; `None` where too few pairs differ.
-    pub interval: Option<[f64; 2]>,
-}
 
 /// A policy under one lie.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,11 +76,6 @@ struct Rows<'f> {
     counts: Vec<u32>,
     /// For each lie, the cases with each number of liars.
     lies: Vec<Lie>,
-}
-
-struct Lie {
-    name: String,
-    cases: Vec<usize>,
 }
 
 impl Deceit {
@@ -227,62 +202,5 @@ impl Rows<'_> {
             }
         }
         Ok(judgements)
-    }
-}
-
-/// The estimator behind a policy that hears nothing of what robots say: it changes no decision.
-fn deaf_guide(policy: &str) -> Option<&str> {
-    match Written::of(policy) {
-        Written { rule: "DIS", guide } => guide,
-        _ => None,
-    }
-}
-
-/// The place of the draw among the policies.
-fn draw(experiment: &Experiment) -> Result<usize, Failure> {
-    let draw = experiment.plan.baseline.as_deref().unwrap_or(DRAW);
-    match experiment.policies.iter().position(|policy| policy.label == draw) {
-        Some(place) => Ok(place),
-        None => refuse!("policies must have {draw}, the fair draw"),
-    }
-}
-
-/// The numbers of liars, and for each lie its cases in the order of the numbers.
-fn lies(experiment: &Experiment) -> Result<(Vec<u32>, Vec<Lie>), Failure> {
-    let counts = |values: &[String]| values.iter().map(|value| count(value)).collect::<Option<Vec<u32>>>();
-    let mut axes = experiment.axes.iter().enumerate();
-    let Some((axis, counts)) = axes.find_map(|(place, axis)| Some((place, counts(&axis.values)?))) else {
-        refuse!("must have an axis of who lies, such as \"deceit[0].who\": [Count(0), Count(1), Count(2)]");
-    };
-    let mut order: Vec<usize> = (0..counts.len()).collect();
-    order.sort_by_key(|place| counts[*place]);
-    let mut lies: BTreeMap<usize, Lie> = BTreeMap::new();
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
-    for (number, case) in experiment.cases.iter().enumerate() {
-        let others = case.values.iter().enumerate().filter(|(place, _)| *place != axis);
-        let name = others.map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(", ");
-        let next = places.len();
-        let place = *places.entry(name.clone()).or_insert(next);
-        let lie = lies.entry(place).or_insert_with(|| Lie { name, cases: vec![0; counts.len()] });
-        let of = experiment.axes[axis].values.iter().position(|value| *value == case.values[axis]);
-        if let Some(at) = of.and_then(|of| order.iter().position(|place| *place == of)) {
-            lie.cases[at] = number;
-        }
-    }
-    Ok((order.into_iter().map(|place| counts[place]).collect(), lies.into_values().collect()))
-}
-
-/// The number in `Count(3)`.
-fn count(value: &str) -> Option<u32> {
-    value.trim().strip_prefix("Count(")?.strip_suffix(')')?.trim().parse().ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_liars_are_read() {
-        assert_eq!(["Count(0)", " Count( 12 )", "Share(0.5)"].map(count), [Some(0), Some(12), None]);
     }
 }
