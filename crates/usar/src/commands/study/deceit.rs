@@ -12,6 +12,7 @@ use reports::table::{headed, right};
 use serde_json::json;
 
 use crate::arguments::{ProgressArguments, ShownArguments};
+use crate::input::read_sweep;
 use crate::library;
 use crate::prelude::*;
 
@@ -40,8 +41,8 @@ Examples:
   usar study regret scenarios/sweeps/trust-tunnel-regret.ron
   usar study deceit scenarios/sweeps/trust-tunnel.ron --replay results/trust-tunnel-regret")]
 pub(crate) struct Arguments {
-    /// Sweep file (RON)
-    #[arg(value_name = "FILE", value_parser = library::path)]
+    /// Sweep file (RON), or the folder of a sweep
+    #[arg(value_name = "FILE|DIR", value_parser = library::path)]
     file: PathBuf,
     /// File or folder to write [default: results/NAME]
     #[arg(long, value_name = "DIR")]
@@ -57,6 +58,11 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        if self.file.is_dir() {
+            let folder = read_sweep(&self.file, registry)?;
+            Deceit::check(folder.experiment()).map_err(Failure::input_at(self.file.display()))?;
+            return self.print(&folder, out);
+        }
         let experiment = Experiment::load(&self.file, &Overrides::default(), registry)?;
         Deceit::check(&experiment).map_err(Failure::input_at(self.file.display()))?;
         if let Some(folder) = &self.replay {
@@ -68,7 +74,11 @@ impl Arguments {
         let mut folder = Folder::open(&place, Arc::new(experiment), Opening::default(), note)?;
         self.progress.run_missing(&mut folder, None, None)?;
         folder.finish(&STOP)?;
-        let found = Deceit::of(&folder)?;
+        self.print(&folder, out)
+    }
+
+    fn print(&self, folder: &Folder, out: &mut dyn Write) -> Result<(), Failure> {
+        let found = Deceit::of(folder)?;
         if self.shown.is_json() {
             return print_json(&as_json(&found));
         }
