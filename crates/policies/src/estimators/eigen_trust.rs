@@ -17,7 +17,7 @@ use super::outcomes::{Outcome, Outcomes, TOLERANCE, by_rater};
 /// The greatest change of a trust at which the iteration ends.
 const STILL: f64 = 1e-12;
 
-/// Iterations at most. With `a` of 0.01 it takes 2,800.
+/// Iterations at most. With `a` of 0.01 it takes about 2,750.
 const MOST_TURNS: u32 = 10_000;
 
 /// Believes robots by the principal eigenvector of their ratings; levels are those said last.
