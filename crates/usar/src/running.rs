@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, Once};
 use std::time::Instant;
 
 use experiments::Failure;
@@ -40,6 +40,11 @@ pub(crate) fn session_of(
 
 /// From now on, Ctrl-C, SIGTERM and SIGHUP set [`STOP`], and running work ends in an orderly way.
 pub(crate) fn stop_on_signals() {
+    static REGISTERED: Once = Once::new();
+    REGISTERED.call_once(register_signals);
+}
+
+fn register_signals() {
     #[cfg(unix)]
     let signals = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
     #[cfg(not(unix))]
