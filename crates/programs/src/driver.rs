@@ -48,7 +48,7 @@ struct Program {
     stop: Stop,
     /// Number of processes so far.
     started: AtomicU32,
-    /// Number of the last processes that ended by themselves, in a row.
+    /// Number of the last trials, in a row, in which a process ended by itself.
     deaths: AtomicU32,
     greeting: OnceLock<Greeting>,
     /// A process that was started for its hello and waits for its first session.
@@ -177,7 +177,7 @@ impl Driver for Handle {
 
     fn gave_up(&self) -> Option<String> {
         let is_enough = self.0.deaths.load(Ordering::Relaxed) >= MOST_DEATHS;
-        is_enough.then(|| format!("its program ended {MOST_DEATHS} times in a row before it answered"))
+        is_enough.then(|| format!("its program ended by itself in {MOST_DEATHS} trials in a row"))
     }
 }
 
@@ -217,7 +217,6 @@ impl ProgramSession {
                 return Err(self.lose(error, asked.question));
             }
         };
-        self.program.deaths.store(0, Ordering::Relaxed);
         let complaint = match decision(&line, id, asked.question) {
             Ok(decision) => {
                 self.process = Some(process);
@@ -235,6 +234,13 @@ impl ProgramSession {
             return Err(ProgramError { round: Some(asked.question.round), ..error }.into());
         }
         Err(self.lose(error, asked.question))
+    }
+
+    /// Notes that a process came to the end of a trial.
+    fn end_trial(&mut self) {
+        if self.trial.is_some() && self.process.is_some() && self.questions > 0 {
+            self.program.deaths.store(0, Ordering::Relaxed);
+        }
     }
 
     /// Notes that the process of this trial is no more.
@@ -257,6 +263,7 @@ impl Session for ProgramSession {
             (Some(lost), true) => return Err(lost.clone()),
             (_, false) => {}
         }
+        self.end_trial();
         self.trial = Some((start.seed, start.scenario.to_owned()));
         if self.process.is_none() {
             self.lost = None;
@@ -276,6 +283,7 @@ impl Session for ProgramSession {
 
 impl Drop for ProgramSession {
     fn drop(&mut self) {
+        self.end_trial();
         let process = self.process.take();
         process
             .into_iter()

@@ -28,7 +28,7 @@ pub struct TemplateFile {
 
 /// A word that is no [`Language`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("must be {}, found {found:?}", Language::ALL.map(Language::name).join(", "))]
+#[error("must be python, rust, julia, r or js, found {found:?}")]
 pub struct UnknownLanguage {
     /// The word.
     pub found: String,
@@ -74,12 +74,12 @@ impl Language {
         }
     }
 
-    /// The command that starts the program with this name.
+    /// The command that starts the program with this path, without its ending.
     #[must_use]
-    pub fn command(self, name: &str) -> Vec<String> {
-        let manifest = format!("{name}/Cargo.toml");
-        let file = |ending: &str| format!("{name}.{ending}");
-        let words = match self {
+    pub fn command(self, path: &str) -> Vec<String> {
+        let manifest = format!("{path}/Cargo.toml");
+        let file = |ending: &str| format!("{path}.{ending}");
+        match self {
             Self::Python => vec!["python3".to_owned(), file("py")],
             Self::Julia => vec!["julia".to_owned(), file("jl")],
             Self::R => vec!["Rscript".to_owned(), file("R")],
@@ -88,18 +88,26 @@ impl Language {
                 let words = ["cargo", "run", "--quiet", "--release", "--manifest-path", &manifest];
                 words.map(str::to_owned).to_vec()
             }
-        };
-        words
+        }
     }
 
-    /// The policy with the program of this name, with the name as its label.
+    /// The command that asks the program with this path, without its ending, three questions.
     #[must_use]
-    pub fn policy(self, name: &str) -> String {
+    pub fn test(self, path: &str) -> String {
+        match self {
+            Self::Rust => format!("cargo test --quiet --manifest-path {path}/Cargo.toml"),
+            _ => format!("{} --test", self.command(path).join(" ")),
+        }
+    }
+
+    /// The policy with this label whose program has this path, without its ending.
+    #[must_use]
+    pub fn policy(self, label: &str, path: &str) -> String {
         let sources = match self {
-            Self::Rust => format!(", sources: [\"{name}/src/*.rs\"]"),
+            Self::Rust => format!(", sources: [\"{path}/src/*.rs\"]"),
             _ => String::new(),
         };
-        format!("{name}=EXEC(command: {:?}{sources})", self.command(name))
+        format!("{label}=EXEC(command: {:?}{sources})", self.command(path))
     }
 }
 

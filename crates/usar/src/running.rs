@@ -32,9 +32,11 @@ pub(crate) fn session_of(
     scenario: &Scenario,
     seed: u64,
 ) -> Result<Box<dyn Session>, Failure> {
-    let failed = |error: PolicyError| Failure::run(format!("policy {}: {error}", spec.label));
-    let mut session = spec.made().open().map_err(failed)?;
-    session.reset(&TrialStart { scenario: &scenario.name, seed }).map_err(failed)?;
+    let failed = |error: PolicyError| format!("policy {}: {error}", spec.label);
+    let mut session = spec.made().open().map_err(|error| Failure::input(failed(error)))?;
+    session
+        .reset(&TrialStart { scenario: &scenario.name, seed })
+        .map_err(|error| Failure::run(failed(error)))?;
     Ok(session)
 }
 
