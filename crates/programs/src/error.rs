@@ -78,7 +78,7 @@ impl fmt::Display for End {
 #[derive(Debug, Clone)]
 pub(crate) struct ProgramError {
     /// What is wrong.
-    pub(crate) complaint: Complaint,
+    pub(crate) complaint: Box<Complaint>,
     /// The round whose question waits.
     pub(crate) round: Option<u32>,
     /// The line as it was sent.
@@ -89,13 +89,16 @@ pub(crate) struct ProgramError {
 
 impl From<Complaint> for ProgramError {
     fn from(complaint: Complaint) -> Self {
-        Self { complaint, round: None, line: None, last_words: Vec::new() }
+        Self { complaint: Box::new(complaint), round: None, line: None, last_words: Vec::new() }
     }
 }
 
 impl From<ProgramError> for PolicyError {
     fn from(error: ProgramError) -> Self {
-        Self::Other(error.to_string())
+        match *error.complaint {
+            Complaint::Silent(_) => Self::Slow(error.to_string()),
+            _ => Self::Other(error.to_string()),
+        }
     }
 }
 

@@ -153,7 +153,8 @@ impl Process {
         if let Some(stdin) = self.stdin.as_ref().filter(|_| sends) {
             ends.push(PollFd::new(stdin, PollFlags::OUT));
         }
-        let longest = Timespec { tv_sec: longest.as_secs() as i64, tv_nsec: longest.subsec_nanos().into() };
+        // Less than a second: see `PERIOD`.
+        let longest = Timespec { tv_sec: 0, tv_nsec: longest.subsec_nanos().into() };
         match poll(&mut ends, Some(&longest)) {
             Ok(_) | Err(Errno::INTR) => {}
             Err(error) => return Err(error.into()),

@@ -24,7 +24,8 @@ function decide(question, options) {
 
 function answer() {
   let options = {};
-  const send = (message) => process.stdout.write(JSON.stringify(message) + "\n"); // all other prints: console.error
+  // All other prints: console.error(...).
+  const send = (message) => process.stdout.write(JSON.stringify(message) + "\n");
   readline.createInterface({ input: process.stdin }).on("line", (line) => {
     const message = JSON.parse(line);
     if (message.type === "hello") {

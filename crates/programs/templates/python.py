@@ -45,8 +45,9 @@ def test():
             question = json.loads(line)
             groups = decide(question, {})
             grouped = sorted(robot for group in groups for robot in group)
+            members = sorted(robot["id"] for robot in question["members"])
             assert len(groups) == len(question["tasks"]), f"question {count}: {groups}"
-            assert grouped == sorted(robot["id"] for robot in question["members"]), f"question {count}: {groups}"
+            assert grouped == members, f"question {count}: {groups}"
     print(f"{count} questions answered")
 
 

@@ -42,7 +42,8 @@ fn main() -> std::io::Result<()> {
             }
             Some("question") => {
                 let groups = decide(&message["question"], &options);
-                json!({"type": "decision", "id": message["id"], "decision": {"assignment": {"groups": groups}}})
+                let decision = json!({"assignment": {"groups": groups}});
+                json!({"type": "decision", "id": message["id"], "decision": decision})
             }
             _ => break,
         };

@@ -106,7 +106,7 @@ fn a_program_that_does_not_read_is_not_waited_for_longer_than_it_may() {
     let body = format!("{WITH_CHILD}time.sleep(600)");
     let mut session = python(folder.path(), &body, ", timeout_s: 0.3").open().unwrap();
     let error = ask(&mut *session, 1, &question).unwrap_err().to_string();
-    assert_eq!(error, "round 1: it did not answer within 0.3 s (timeout_s)");
+    assert_eq!(error, "the policy did not answer in time: round 1: it did not answer within 0.3 s (timeout_s)");
     nothing_lives(folder.path());
 }
 
@@ -128,6 +128,19 @@ answer()";
     assert!(ask(&mut *session, 2, &small()).is_ok() && ask(&mut *session, 3, &small()).is_ok());
     assert_eq!(std::fs::read_to_string(folder.path().join("count")).unwrap(), "2");
     assert_eq!(policy.it.gave_up(), None);
+}
+
+#[test]
+fn a_program_that_becomes_another_one_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let body = "hello(version=str(os.path.exists(os.path.dirname(__file__) + '/new')))\nanswer()";
+    let policy = python(folder.path(), body, "");
+    let before = policy.fingerprint().unwrap();
+    assert!(before.starts_with("test False; protocol "), "{before}");
+    drop(policy.open().unwrap());
+    std::fs::write(folder.path().join("new"), "").unwrap();
+    let error = policy.open().err().unwrap().to_string();
+    assert_eq!(error, "its hello changed while it was running: it was test False, and is now test True");
 }
 
 #[test]

@@ -43,15 +43,16 @@ send({'type': 'error', 'id': asked['id'], 'message': 'enough'})";
     let error = ask(&mut *session, 7, &small()).unwrap_err().to_string();
     let (head, told) = error.split_once("\nits standard error ends with:\n  ").unwrap();
     assert_eq!(head, "round 1: it gave up: enough");
-    let expected = "[{\"type\": \"hello\", \"protocol\": 1, \"schema_versions\": [2], \"usar\": \"0.1.0\", \
-        \"policy\": \"mine\", \"options\": {\"depth\": 3, \"names\": [\"a\"], \"rule\": \"Sum\"}, \"process\": 0}, \
-        {\"type\": \"question\", \"id\": 1, \"trial\": {\"seed\": 7, \"scenario\": \"paper\"}, \"question\": 1}]";
+    let expected = "[{\"type\": \"hello\", \"protocol\": 1, \"schema_versions\": [2], \
+        \"usar\": \"0.1.0\", \"policy\": \"mine\", \
+        \"options\": {\"depth\": 3, \"names\": [\"a\"], \"rule\": \"Sum\"}, \"process\": 0}, \
+        {\"type\": \"question\", \"id\": 1, \"trial\": {\"seed\": 7, \"scenario\": \"paper\"}, \
+        \"question\": 1}]";
     assert_eq!(told, expected);
 }
 
 #[test]
 fn a_program_may_write_much_to_its_standard_error() {
-    let body = "hello()\nsys.stderr.write('x' * 79 + '\\n')\nfor _ in range(20000): sys.stderr.write('y' * 79 + '\\n')
-answer()";
+    let body = "hello()\nfor _ in range(20000): print('x' * 79, file=sys.stderr)\nanswer()";
     assert_eq!(groups(&small(), body).len(), 2);
 }

@@ -17,7 +17,7 @@ fn write(folder: &Path, lines: &str) {
     }
     let path = folder.join("mine.py");
     let body = "    tasks = question[\"tasks\"]\n";
-    let indented: String = lines.lines().map(|line| format!("    {line}\n")).collect();
+    let indented: String = lines.lines().flat_map(|line| ["    ", line, "\n"]).collect();
     let text = read(&path);
     assert!(text.contains(body));
     std::fs::write(path, text.replace(body, &format!("{indented}{body}"))).unwrap();
@@ -27,7 +27,8 @@ fn write(folder: &Path, lines: &str) {
 fn sleeper(folder: &Path, round: u32) {
     let lines = format!(
         "import os, subprocess, time\n\
-         with open('pids', 'a') as pids:\n    print(os.getpid(), subprocess.Popen(['sleep', '600']).pid, file=pids)\n\
+         child = subprocess.Popen(['sleep', '600']).pid\n\
+         with open('pids', 'a') as pids:\n    print(os.getpid(), child, file=pids)\n\
          if question['round'] >= {round}:\n    open('asleep', 'w').close(); time.sleep(600)"
     );
     write(folder, &lines);
@@ -174,7 +175,8 @@ fn a_program_that_dies_three_times_ends_the_sweep() {
     let here = folder.path();
     write(
         here,
-        "if question['round'] > 1:\n    print('no model for', question['round'], file=sys.stderr); sys.exit(4)",
+        "if question['round'] > 1:\n    \
+         print('no model for', question['round'], file=sys.stderr); sys.exit(4)",
     );
     let sweep =
         ["sweep", "short.ron", "--policies", MINE, "--trials", "9", "--set", "duration_s=600", "--jobs", "1"];
@@ -196,6 +198,22 @@ fn a_command_that_cannot_start_is_bad_input_and_nothing_is_written() {
     refused(here, 2, &["run", "short.ron", "--policy", no, "--events", "e.jsonl"], &says);
     refused(here, 2, &["check", "--policy", no], &says);
     assert!(!here.join("results").exists() && !here.join("e.jsonl").exists());
+}
+
+#[test]
+fn reading_results_starts_no_program() {
+    let folder = place();
+    let here = folder.path();
+    write(here, "");
+    let policies = format!("DIS,{MINE}");
+    succeeds(&usar(here, &["sweep", "short.ron", "--policies", &policies, "--trials", "3", "--quiet"]));
+    std::fs::write(here.join("mine.py"), "open('started', 'w').close()\n").unwrap();
+    for arguments in ["compare results/paper", "export table results/paper", "report results/paper"] {
+        succeeds(&usar(here, arguments));
+        assert!(!here.join("started").exists(), "{arguments}");
+    }
+    assert_eq!(usar(here, "verify results/paper --quiet").status.code(), Some(1));
+    assert!(here.join("started").exists());
 }
 
 #[test]

@@ -85,11 +85,7 @@ pub(super) fn check(
     let [median_ms, p95_ms, longest_ms] = [0.5, 0.95, 1.0].map(part);
     let (policy, questions) = (spec.label.clone(), QUESTIONS);
     let checked = Checked { policy, questions, breaches, differing, start_s, median_ms, p95_ms, longest_ms };
-    if is_json {
-        print_json(&checked)?
-    } else {
-        print(out, &checked)?
-    }
+    if is_json { print_json(&checked) } else { print(out, &checked) }?;
     verdict(&checked)
 }
 
@@ -115,8 +111,8 @@ fn print(out: &mut dyn Write, checked: &Checked) -> Result<(), Failure> {
     let Checked { policy, questions, breaches, differing, start_s, median_ms, p95_ms, longest_ms } = checked;
     writeln!(
         out,
-        "{policy}: {questions} random questions; against the rules {}, answered otherwise by a second session \
-         {}",
+        "{policy}: {questions} random questions; against the rules {}, answered otherwise by a second \
+         session {}",
         breaches.len(),
         differing.len()
     )?;

@@ -9,8 +9,8 @@ use crate::prelude::*;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Writes a program that answers questions, and three questions to test it with. It groups by energy, as ENG \
-does, until you change its function `decide`. The files must not exist yet. docs/programs.md has the messages \
-between the command and a program.
+does, until you change its function `decide`. The files must not exist yet. docs/programs.md has the \
+messages between the command and a program.
 
 Examples:
   usar new policy mine --lang python       mine.py
