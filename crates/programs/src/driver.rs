@@ -51,8 +51,8 @@ struct Program {
     /// Number of the last trials, in a row, in which a process ended by itself.
     deaths: AtomicU32,
     greeting: OnceLock<Greeting>,
-    /// A process that was started for its hello and waits for its first session.
-    spare: Mutex<Option<Process>>,
+    /// A process that was started for its hello and waits for its first session, or why there is none.
+    spare: Mutex<Option<Result<Process, ProgramError>>>,
 }
 
 impl Program {
@@ -118,15 +118,16 @@ impl Program {
     /// The process that waits for its first session, or else a new one.
     fn process(&self) -> Result<Process, ProgramError> {
         let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).take();
-        spare.filter(|process| !process.is_over()).map_or_else(|| self.start(), Ok)
+        let is_of_use = |spare: &Result<Process, _>| spare.as_ref().map_or(true, |there| !there.is_over());
+        spare.filter(is_of_use).unwrap_or_else(|| self.start())
     }
 
     /// Starts a process for its hello, unless there was one.
     fn greeting(&self) -> Option<&Greeting> {
         if self.greeting.get().is_none() {
             let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
-            if self.greeting.get().is_none() {
-                *spare = self.start().ok();
+            if self.greeting.get().is_none() && spare.is_none() {
+                *spare = Some(self.start());
             }
         }
         self.greeting.get()
@@ -136,7 +137,8 @@ impl Program {
 impl Drop for Program {
     fn drop(&mut self) {
         let spare = self.spare.get_mut().unwrap_or_else(PoisonError::into_inner).take();
-        spare.into_iter().for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.stop.flag));
+        let spare = spare.and_then(Result::ok).into_iter();
+        spare.for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.stop.flag));
     }
 }
 

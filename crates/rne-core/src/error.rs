@@ -207,7 +207,7 @@ pub enum PolicyError {
     #[error("the policy did not answer in time")]
     Late,
     /// The policy did not answer within a time of its own, in its own words.
-    #[error("{}: {0}", Self::Late)]
+    #[error("{late}: {0}", late = Self::Late)]
     Slow(String),
     /// The policy plays the running trial on, and is asked outside of one.
     #[error("{policy} plays each assignment in the trial that asks; here is no trial")]

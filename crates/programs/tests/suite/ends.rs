@@ -106,7 +106,10 @@ fn a_program_that_does_not_read_is_not_waited_for_longer_than_it_may() {
     let body = format!("{WITH_CHILD}time.sleep(600)");
     let mut session = python(folder.path(), &body, ", timeout_s: 0.3").open().unwrap();
     let error = ask(&mut *session, 1, &question).unwrap_err().to_string();
-    assert_eq!(error, "the policy did not answer in time: round 1: it did not answer within 0.3 s (timeout_s)");
+    assert_eq!(
+        error,
+        "the policy did not answer in time: round 1: it did not answer within 0.3 s (timeout_s)"
+    );
     nothing_lives(folder.path());
 }
 
@@ -128,6 +131,17 @@ answer()";
     assert!(ask(&mut *session, 2, &small()).is_ok() && ask(&mut *session, 3, &small()).is_ok());
     assert_eq!(std::fs::read_to_string(folder.path().join("count")).unwrap(), "2");
     assert_eq!(policy.it.gave_up(), None);
+}
+
+#[test]
+fn a_program_without_a_hello_is_waited_for_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let policy = python(folder.path(), "time.sleep(60)", ", start_s: 1");
+    let since = Instant::now();
+    assert_eq!(policy.fingerprint().unwrap(), "a program that does not start");
+    assert_eq!(policy.it.basis(), rne_core::Basis::Question);
+    assert_eq!(policy.open().err().unwrap().to_string(), "it sent no hello within 1 s (start_s)");
+    assert!(since.elapsed() < Duration::from_secs(2), "{:?}", since.elapsed());
 }
 
 #[test]
