@@ -226,6 +226,9 @@ pub enum PolicyError {
     /// The policy did not answer before its deadline.
     #[error("the policy did not answer in time")]
     Late,
+    /// The policy did not answer within a time of its own, in its own words.
+    #[error("{late}: {0}", late = Self::Late)]
+    Slow(String),
     /// The policy plays the running trial on, and is asked outside of one.
     #[error("{policy} plays each assignment in the trial that asks; here is no trial")]
     NoTrial {

@@ -45,6 +45,15 @@ impl Driver for Guided {
         self.estimator.it.least_raters().max(self.rule.it.least_raters())
     }
 
+    fn labelled(&self, label: &str) -> Option<Arc<dyn Driver>> {
+        let (label, rule) = (label.to_owned(), self.rule.clone().labelled(label));
+        Some(Arc::new(Self { label, rule, ..self.clone() }))
+    }
+
+    fn gave_up(&self) -> Option<String> {
+        self.rule.it.gave_up()
+    }
+
     /// It leans on its rule and on its estimator.
     fn fingerprint(&self) -> Option<String> {
         Some(format!("{} <- {}", self.rule.fingerprint()?, self.estimator.fingerprint()?))

@@ -73,6 +73,15 @@ impl MadePolicy {
         self.it.open()
     }
 
+    /// The same policy under the label that it has in tables.
+    #[must_use]
+    pub fn labelled(mut self, label: &str) -> Self {
+        if let Some(it) = self.it.labelled(label) {
+            self.it = it;
+        }
+        self
+    }
+
     /// Answers one question, in a session of its own.
     ///
     /// # Errors

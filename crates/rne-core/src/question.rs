@@ -4,6 +4,7 @@
 //! A question is complete: a policy is a function of its question, and random draws come from the question
 //! too. Its JSON form is documented in `docs/decisions.md`.
 
+use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -290,6 +291,19 @@ impl Question {
             reason: ron_tree::without_types(&error),
         })?;
         question.checked()
+    }
+
+    /// The question without the truth that controls need: as others are asked, who must not see it.
+    #[must_use]
+    pub fn without_truth(&self) -> Cow<'_, Self> {
+        match &self.evidence {
+            Some(evidence) if !evidence.truth.is_empty() => {
+                let mut asked = self.clone();
+                asked.evidence.iter_mut().for_each(|evidence| evidence.truth.clear());
+                Cow::Owned(asked)
+            }
+            _ => Cow::Borrowed(self),
+        }
     }
 
     /// The ids of all roles, in the order of their table.

@@ -44,6 +44,16 @@ pub trait Driver: Send + Sync {
     fn fingerprint(&self) -> Option<String> {
         None
     }
+
+    /// The same driver under the label that it has in tables. `None` for a driver to which that is nothing.
+    fn labelled(&self, _label: &str) -> Option<Arc<dyn Driver>> {
+        None
+    }
+
+    /// Why it will not answer any more, so that no further trial should begin. `None` as long as it may.
+    fn gave_up(&self) -> Option<String> {
+        None
+    }
 }
 
 /// What the answers of a driver follow from.

@@ -16,7 +16,7 @@ use crate::arguments::format_of;
 use crate::commands::{ASKED, Cli, command, completing};
 use crate::library;
 use crate::output::{columns_of, sentences};
-use crate::running::{status_of_signal, tell};
+use crate::running::{STOP, is_stopped, status_of_signal, stop_on_signals, tell};
 
 /// Runs the command with which the process was called. The exit status is 0 for a result, 1 for a failure
 /// of the run, 2 for unusable input, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM and 129 after
@@ -40,7 +40,9 @@ pub fn main() -> ExitCode {
 #[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
     CompleteEnv::with_factory(|| completing(command())).var(ASKED).complete();
-    let registry = with_oracle(policies);
+    let mut registry = with_oracle(policies);
+    // A caller's policy of the same name stays.
+    let _ = registry.add(programs::kind(&STOP, stop_on_signals));
     usar_sim::scenario::carry(library::FILES);
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
     std::panic::set_hook(Box::new(note_panic));
@@ -64,6 +66,7 @@ pub fn main_with(policies: Registry) -> ExitCode {
     let result = std::panic::catch_unwind(run)
         .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
     let result = result.and_then(|()| Ok(out.flush()?));
+    programs::end_all();
     match result {
         Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
         Err(failure) => {
@@ -89,6 +92,8 @@ fn verb_for(error: &clap::Error) -> Option<String> {
 fn exit_status(failure: &Failure) -> u8 {
     match failure {
         Failure::ClosedOutput => 0,
+        // A policy that was told to stop has not answered.
+        Failure::Run(_) | Failure::Input(_) if is_stopped() => status_of_signal(),
         Failure::Run(_) => 1,
         Failure::Input(_) => 2,
         Failure::Storage(_) => 3,

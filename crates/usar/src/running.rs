@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, Once};
 use std::time::Instant;
 
 use experiments::Failure;
@@ -32,14 +32,21 @@ pub(crate) fn session_of(
     scenario: &Scenario,
     seed: u64,
 ) -> Result<Box<dyn Session>, Failure> {
-    let failed = |error: PolicyError| Failure::run(format!("policy {}: {error}", spec.label));
-    let mut session = spec.made().open().map_err(failed)?;
-    session.reset(&TrialStart { scenario: &scenario.name, seed }).map_err(failed)?;
+    let failed = |error: PolicyError| format!("policy {}: {error}", spec.label);
+    let mut session = spec.made().open().map_err(|error| Failure::input(failed(error)))?;
+    session
+        .reset(&TrialStart { scenario: &scenario.name, seed })
+        .map_err(|error| Failure::run(failed(error)))?;
     Ok(session)
 }
 
 /// From now on, Ctrl-C, SIGTERM and SIGHUP set [`STOP`], and running work ends in an orderly way.
 pub(crate) fn stop_on_signals() {
+    static REGISTERED: Once = Once::new();
+    REGISTERED.call_once(register_signals);
+}
+
+fn register_signals() {
     #[cfg(unix)]
     let signals = [SIGINT, SIGTERM, signal_hook::consts::SIGHUP];
     #[cfg(not(unix))]

@@ -34,7 +34,7 @@ impl Experiment {
     }
 
     /// The first round in which the policy gives another answer than in the trial when it is asked the same
-    /// questions a few times again. `None` if every answer is the same, or if the policy does not answer from
+    /// questions a few times again, each time in a session of its own. `None` if every answer is the same, or if the policy does not answer from
     /// the question.
     #[must_use]
     pub fn answers_otherwise(&self, key: &TrialKey, record: &TrialRecord) -> Option<u32> {
@@ -42,9 +42,9 @@ impl Experiment {
         if !spec.is_of_question() {
             return None;
         }
-        let mut session = spec.made().open().ok()?;
         let start = TrialStart { scenario: &self.cases[key.case].scenario.name, seed: key.seed };
-        let mut first_other = || {
+        let first_other = || {
+            let mut session = spec.made().open().ok()?;
             session.reset(&start).ok()?;
             let is_other = |asked: &&DecisionRecord| {
                 let answer = session.decide(&Asked::of(&record.question(asked)));

@@ -12,14 +12,14 @@ mod raters;
 mod read;
 mod setting;
 mod shard;
+mod start;
 mod sweep_file;
 
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use rne_core::{Asked, Registry, TrialStart};
+use rne_core::Registry;
 use store::{Failure, refuse};
-use usar_sim::simulation::{Advance, Ask, Simulation};
 use xxhash_rust::xxh3::xxh3_128;
 
 use usar_sim::scenario::{Scenario, parse_tree, read_text};
@@ -324,38 +324,6 @@ impl Experiment {
             Seeds::From(first) => first.wrapping_add(u64::from(trial - 1)),
             Seeds::Listed(list) => list[trial as usize - 1],
         }
-    }
-
-    /// Draws every layout and asks every policy the first question. A scenario without enough room, or a
-    /// policy that cannot group this team, then fails before the first trial runs.
-    ///
-    /// # Errors
-    /// A layout that cannot be drawn, or a question that a policy cannot answer, with the seed.
-    pub fn check_start(&self, path: &Path) -> Result<(), Failure> {
-        for case in &self.cases {
-            let is_drawn = case.scenario.is_drawn();
-            let trials = if is_drawn { self.trials } else { 1 };
-            for seed in (1..=trials).map(|trial| self.seed(trial)) {
-                self.check_case(case, seed).map_err(Failure::input_at(path.display()))?;
-            }
-        }
-        Ok(())
-    }
-
-    fn check_case(&self, case: &Case, seed: u64) -> Result<(), String> {
-        let place = self.describe(case);
-        let mut trial =
-            Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
-        let Advance::Asks(Ask::Grouping(question)) = trial.advance() else { return Ok(()) };
-        let start = TrialStart { scenario: &case.scenario.name, seed };
-        for spec in self.policies.iter().filter(|spec| spec.is_of_question()) {
-            let refused = |error: &dyn std::fmt::Display| format!("{place}policy {}: {error}", spec.label);
-            let mut session = spec.made().open().map_err(|error| refused(&error))?;
-            session.reset(&start).map_err(|error| refused(&error))?;
-            let decision = session.decide(&Asked::of(question)).map_err(|error| refused(&error))?;
-            decision.assignment.check(question).map_err(|error| refused(&error))?;
-        }
-        Ok(())
     }
 
     /// A case's values of the axes, followed by a colon; empty without axes.

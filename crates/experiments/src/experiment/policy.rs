@@ -65,6 +65,7 @@ impl PolicySpec {
         }
         let written = label.map_or(plain.clone(), |label| format!("{label}={plain}"));
         let label = label.map_or(plain, str::to_owned);
+        let made = made.labelled(&label);
         let measure = registry.measure(&self::plain(name, &options)).ok();
         Ok(Self { label, name: name.to_owned(), options, guide, written, made, measure })
     }
@@ -197,11 +198,17 @@ fn parse_options(text: &str) -> Result<Vec<(String, String)>, Failure> {
     }
 }
 
-/// The entries of a comma-separated list. Commas inside brackets do not separate.
+/// The entries of a comma-separated list. Commas inside brackets and quotes do not separate.
 #[must_use]
 pub fn split_list(text: &str) -> Vec<&str> {
-    let mut depth = 0_i32;
+    let (mut depth, mut is_text, mut is_escaped) = (0_i32, false, false);
     let splits = |c: char| {
+        let escapes = is_text && !is_escaped && c == '\\';
+        is_text ^= c == '"' && !is_escaped;
+        is_escaped = escapes;
+        if is_text {
+            return false;
+        }
         depth += i32::from("([{".contains(c)) - i32::from(")]}".contains(c));
         c == ',' && depth == 0
     };
@@ -221,6 +228,7 @@ mod tests {
         let labelled = spec("sum=RNE(score: Sum)");
         assert_eq!((labelled.label.as_str(), labelled.name.as_str()), ("sum", "RNE"));
         assert_eq!(split_list("DIS, a=RNE(sort: true, scale: false),ENG").len(), 3);
+        assert_eq!(split_list(r#"a=X(b: ["(", "\"]", ","]),ENG"#).len(), 2);
     }
 
     #[test]

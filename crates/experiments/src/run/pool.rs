@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use store::Failure;
 
 use super::sessions::Sessions;
-use super::trial::{Fault, FaultKind, Outcome, Trial, TrialKey, UNANSWERED};
+use super::trial::{Fault, FaultKind, HALTED, Outcome, Trial, TrialKey, UNANSWERED};
 use crate::panics::panic_message;
 
 /// How often the time limit and `stop` are checked, at least.
@@ -224,7 +224,8 @@ impl Pool {
 /// The outcome of a trial that may have been told to halt because it was late.
 fn ended(outcome: Outcome, longest: Option<Duration>) -> Outcome {
     match (&outcome.result, longest) {
-        (Err(fault), Some(longest)) if fault.kind == FaultKind::TimedOut => {
+        // A policy may have a limit of its own, and says so.
+        (Err(fault), Some(longest)) if [HALTED, UNANSWERED].contains(&fault.reason.as_str()) => {
             let result = Err(timed_out(longest, &fault.reason));
             Outcome { result, ..outcome }
         }

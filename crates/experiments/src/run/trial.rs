@@ -14,6 +14,9 @@ use usar_sim::simulation::Simulation;
 /// The reason of a trial that ended because its policy gave up at the deadline.
 pub(super) const UNANSWERED: &str = "its policy did not answer in time";
 
+/// The reason of a trial that ended because it was told to.
+pub(super) const HALTED: &str = "it was halted";
+
 /// Time between two points of a series, in seconds.
 const SERIES_PERIOD_S: f64 = 10.0;
 
@@ -112,7 +115,9 @@ impl Fault {
     /// The policy of the trial failed.
     #[must_use]
     pub fn of_policy(error: &PolicyError) -> Self {
-        Self { kind: FaultKind::Failed, reason: format!("the policy failed: {error}") }
+        let is_late = matches!(error, PolicyError::Late | PolicyError::Slow(_));
+        let kind = if is_late { FaultKind::TimedOut } else { FaultKind::Failed };
+        Self { kind, reason: format!("the policy failed: {error}") }
     }
 
     /// A sentence with the trial and its fault.
@@ -186,7 +191,7 @@ pub fn run_trial(setup: &TrialSetup, session: &mut dyn Session, halt: &AtomicBoo
     let mut deliveries = vec![Vec::new(); setup.scenario.tasks.len()];
     while simulation.step_within(&mut *session, Deadline::when(halt)).is_none() {
         if halt.load(Ordering::Relaxed) {
-            return Err(late("it was halted"));
+            return Err(late(HALTED));
         }
         for event in simulation.events() {
             if let Event::Delivered { rescuee, .. } = event {
@@ -198,7 +203,13 @@ pub fn run_trial(setup: &TrialSetup, session: &mut dyn Session, halt: &AtomicBoo
     let record = simulation.finish();
     match record.status {
         Status::Failed(reason) if reason.ends_with(&PolicyError::Late.to_string()) => Err(late(UNANSWERED)),
+        Status::Failed(reason) if is_slow(&reason) => Err(late(&reason)),
         Status::Failed(reason) => Err(failed(reason)),
         _ => Ok(Trial { record, deliveries }),
     }
+}
+
+/// Whether a trial failed because its policy took longer than the policy's own limit.
+fn is_slow(reason: &str) -> bool {
+    reason.contains(&PolicyError::Slow(String::new()).to_string())
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use store::Failure;
 
 use super::folder::Folder;
-use crate::experiment::{Place, Shard};
+use crate::experiment::{Experiment, Place, Shard};
 use crate::run::{Limits, Outcome, Run, run_batches};
 
 /// Number of seeds whose trials are run together.
@@ -37,7 +37,8 @@ pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
 /// Runs trials of a folder's sweep. Each trial is on disk before `done` is called with it.
 ///
 /// # Errors
-/// The disk does not take a trial, no thread can be started, or `stop` was set before all trials were done.
+/// The disk does not take a trial, no thread can be started, a policy gave up, or `stop` was set before all
+/// trials were done.
 pub fn run_trials(
     folder: &mut Folder,
     trials: Vec<Place>,
@@ -51,8 +52,18 @@ pub fn run_trials(
     let is_whole = run_batches(keys, limits, run, stop, |outcomes| {
         folder.add(&outcomes)?;
         outcomes.iter().for_each(&mut done);
-        Ok(())
+        check_goes_on(folder.experiment(), &outcomes)
     })?;
     folder.experiment().forget_shared();
     if is_whole { Ok(()) } else { Err(folder.interrupted()) }
+}
+
+/// Refuses to go on when a policy will not answer any more.
+fn check_goes_on(experiment: &Experiment, outcomes: &[Outcome]) -> Result<(), Failure> {
+    for Outcome { key, .. } in outcomes.iter().filter(|outcome| outcome.result.is_err()) {
+        if let Some(reason) = experiment.policies[key.policy].made().it.gave_up() {
+            return Err(Failure::run(format!("the sweep ends here: policy {}: {reason}", key.label)));
+        }
+    }
+    Ok(())
 }

@@ -1,4 +1,6 @@
-//! `usar check`: validates scenarios and sweep files without running them.
+//! `usar check`: validates scenarios and sweep files without running them, and policies by random questions.
+
+mod policy;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -12,16 +14,23 @@ use crate::input::{tell_doubts, tell_warnings_of_all};
 use crate::library;
 use crate::prelude::*;
 
-/// Validate scenarios and sweep files without running them
+/// Check scenarios, sweep files and policies without running them
 #[derive(Debug, Args)]
 #[command(after_help = "\
+With --policy, a policy answers 1,000 random questions, twice, and is told which answers are against the \
+rules or differ, and how long a decision takes. Exit status 1 if any is wrong.
+
 Examples:
   usar check mine.ron mine.sweep.ron
-  usar check scenarios/*.ron --json")]
+  usar check scenarios/*.ron --json
+  usar check --policy 'mine=EXEC(command: [\"python3\", \"mine.py\"])'")]
 pub(crate) struct Arguments {
     /// Scenario or sweep files (RON)
-    #[arg(required = true, value_parser = library::path)]
+    #[arg(required_unless_present = "policy", value_parser = library::path)]
     files: Vec<PathBuf>,
+    /// Policy that decides, with its options in brackets [default: none, files are checked]
+    #[arg(long, conflicts_with = "files")]
+    policy: Option<String>,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -65,6 +74,9 @@ fn check_each(files: &[PathBuf], check: impl Fn(&Path) -> Result<String, Failure
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+        if let Some(policy) = &self.policy {
+            return policy::check(policy, registry, self.json.json, out);
+        }
         let checked = check_each(&self.files, |file| check(file, registry));
         let problems: Vec<&str> = checked.iter().flat_map(|one| &one.problems).map(String::as_str).collect();
         if self.json.json {

@@ -44,7 +44,7 @@ fn wrapped(text: &str) -> String {
 
 /// What a command does; of a noun, its verbs.
 fn describe(command: &Command) -> String {
-    if !command.has_subcommands() {
+    if !command.has_subcommands() || command.get_positionals().next().is_some() {
         return command.get_about().map_or(String::new(), ToString::to_string);
     }
     let verb = |command: &Command| {

@@ -144,11 +144,16 @@ impl Arguments {
         (0..count).map(|i| all[i * all.len() / count].clone()).collect()
     }
 
-    /// Notes that another program made the results. Identical numbers are guaranteed only for the same
+    /// Notes that another program made the results, or that a policy has changed since. Identical numbers are guaranteed only for the same
     /// program.
     fn mention_other_program(&self, experiment: &Experiment, manifest: &Manifest) -> Result<(), Failure> {
-        let this = Program::running(&experiment.policies)?;
-        if manifest.program() != this {
+        let (this, that) = (Program::running(&experiment.policies)?, manifest.program());
+        if (&that.version, &that.source) == (&this.version, &this.source) {
+            let pairs = that.policies.iter().zip(&this.policies).zip(&experiment.policies);
+            for (_, policy) in pairs.filter(|((there, now), _)| there != now) {
+                self.progress.tell(format_args!("note: policy {} has changed since the sweep", policy.label));
+            }
+        } else {
             self.progress.tell(format_args!(
                 "note: the sweep is of usar {} ({}), this is usar {} ({COMMIT})",
                 manifest.version, manifest.commit, this.version

@@ -179,7 +179,7 @@ impl Arguments {
             unit: measure.map(|measure| measure.it.unit().to_owned()),
             between,
             directed: directed.unwrap_or_default(),
-            others: other_choices(&full, &decision.assignment, &others(asked)?),
+            others: other_choices(&full, &decision.assignment, &others(asked)),
             oracle: self.oracle(asked, question, &decision.assignment)?,
             robot: story.transpose()?,
             decision,
@@ -235,13 +235,13 @@ fn judgement(survey: &Survey, metric: &str, tasks: &[String], chosen: &Assignmen
 }
 
 /// The policies other than the one that decided.
-fn others(asked: &Trial) -> Result<Vec<PolicySpec>, Failure> {
+fn others(asked: &Trial) -> Vec<PolicySpec> {
     let all = if asked.policies.is_empty() {
-        let parse = |name| PolicySpec::parse(name, &asked.registry);
-        let names = asked.registry.names().into_iter().map(parse);
-        names.collect::<Result<Vec<_>, _>>().map_err(Failure::run)?
+        // A policy that cannot do without options is asked where they are given.
+        let parse = |name| PolicySpec::parse(name, &asked.registry).ok();
+        asked.registry.names().into_iter().filter_map(parse).collect()
     } else {
         asked.policies.clone()
     };
-    Ok(all.into_iter().filter(|spec| spec.plain() != asked.spec.plain()).collect())
+    all.into_iter().filter(|spec| spec.plain() != asked.spec.plain()).collect()
 }

@@ -20,6 +20,7 @@ mod grids;
 mod guarded;
 mod hostile;
 mod lies;
+mod programs;
 mod reported;
 mod resumed;
 mod same_bytes;

@@ -1,0 +1,90 @@
+//! What is tried before the first trial of a sweep.
+
+use std::fmt::Display;
+use std::path::Path;
+
+use rne_core::{Asked, Assignment, Basis, PolicyError, Question, Session, TrialStart};
+use store::Failure;
+use usar_sim::simulation::{Advance, Ask, Simulation};
+
+use super::{Case, Experiment, PolicySpec};
+use crate::run::{Player, Sessions};
+
+impl Experiment {
+    /// Draws every layout and asks every policy the first question, and once more in a second session. A
+    /// scenario without enough room, a policy that cannot group this team, or one that answers the same
+    /// question in two ways then fails before the first trial runs.
+    ///
+    /// # Errors
+    /// A layout that cannot be drawn, a question that a policy cannot answer, or another answer to it, with
+    /// the seed.
+    pub fn check_start(&self, path: &Path) -> Result<(), Failure> {
+        let mut sessions = Sessions::default();
+        for (number, case) in self.cases.iter().enumerate() {
+            let is_drawn = case.scenario.is_drawn();
+            let trials = if is_drawn { self.trials } else { 1 };
+            for trial in 1..=trials {
+                let seed = self.seed(trial);
+                let is_first = number == 0 && trial == 1;
+                self.check_case(case, seed, is_first, &mut sessions)
+                    .map_err(Failure::input_at(path.display()))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_case(
+        &self,
+        case: &Case,
+        seed: u64,
+        is_first: bool,
+        sessions: &mut Sessions,
+    ) -> Result<(), String> {
+        let place = self.describe(case);
+        let mut trial =
+            Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
+        let Advance::Asks(Ask::Grouping(question)) = trial.advance() else { return Ok(()) };
+        let start = TrialStart { scenario: &case.scenario.name, seed };
+        for (number, spec) in self.policies.iter().enumerate().filter(|(_, spec)| spec.is_of_question()) {
+            let refused = |error: &dyn Display| format!("{place}seed {seed}: policy {}: {error}", spec.label);
+            let Player { session, basis } =
+                sessions.of(number, &*spec.made().it).map_err(|error| refused(&error))?;
+            let first = answer(session, &start, question).map_err(|error| refused(&error))?;
+            first.check(question).map_err(|error| refused(&error))?;
+            if is_first && basis == Basis::Question {
+                let second = second_answer(spec, &start, question).map_err(|error| refused(&error))?;
+                if second != first {
+                    return Err(refused(&differing(&[first, second])));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn answer(
+    session: &mut dyn Session,
+    start: &TrialStart<'_>,
+    question: &Question,
+) -> Result<Assignment, PolicyError> {
+    session.reset(start)?;
+    Ok(session.decide(&Asked::of(question))?.assignment.sorted())
+}
+
+/// The answer of another session.
+fn second_answer(
+    spec: &PolicySpec,
+    start: &TrialStart<'_>,
+    question: &Question,
+) -> Result<Assignment, PolicyError> {
+    answer(&mut *spec.made().open()?, start, question)
+}
+
+fn differing(answers: &[Assignment; 2]) -> String {
+    let [first, second] = answers.each_ref().map(|answer| format!("{:?}", answer.groups));
+    format!(
+        "it is no function of its question: asked the first question in two sessions, it answers {first} and \
+         {second}. A policy may use nothing but the question: no clock, no random numbers of its own, no \
+         order of a hash table. A program for which that cannot be writes \"deterministic\": false in its hello"
+    )
+}

@@ -1,0 +1,294 @@
+//! `EXEC`: a policy whose sessions are processes of a program.
+
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use rne_core::{
+    Asked, Basis, Deadline, Decision, Driver, PolicyError, PolicyKind, Question, Session, TrialStart,
+};
+
+use crate::error::{Complaint, ProgramError};
+use crate::files::{files, fingerprint};
+use crate::options::Options;
+use crate::process::{MOST_BYTES, NoLine, Process, Until};
+use crate::protocol::{Greeting, Message, Trial, decision};
+
+/// The policy's name.
+const NAME: &str = "EXEC";
+
+/// So many processes that end by themselves, one after the other, are enough.
+const MOST_DEATHS: u32 = 3;
+
+/// The kind `EXEC`. Its processes are ended when `stop` is set; `begin` is called before each start of a
+/// process, so that a command can set `stop` on signals from then on.
+#[must_use]
+pub fn kind(stop: &Arc<AtomicBool>, begin: fn()) -> PolicyKind {
+    let stop = Stop { flag: Arc::clone(stop), begin };
+    let make = move |options: Options, _: &_| {
+        options.check()?;
+        let program = Program::new(options, NAME.to_owned(), stop.clone());
+        Ok::<_, crate::options::OptionsError>(Arc::new(Handle(Arc::new(program))) as Arc<dyn Driver>)
+    };
+    PolicyKind::made(NAME, "a program in any language answers", make)
+}
+
+/// When everything is to stop.
+#[derive(Clone)]
+struct Stop {
+    flag: Arc<AtomicBool>,
+    /// Called before a process is started.
+    begin: fn(),
+}
+
+/// A program, and what is known of it.
+struct Program {
+    options: Options,
+    /// Name of the policy in tables.
+    label: String,
+    stop: Stop,
+    /// Number of processes so far.
+    started: AtomicU32,
+    /// Number of the last trials, in a row, in which a process ended by itself.
+    deaths: AtomicU32,
+    greeting: OnceLock<Greeting>,
+    /// A process that was started for its hello and waits for its first session, or why there is none.
+    spare: Mutex<Option<Result<Process, ProgramError>>>,
+}
+
+impl Program {
+    fn new(options: Options, label: String, stop: Stop) -> Self {
+        Self {
+            options,
+            label,
+            stop,
+            started: AtomicU32::new(0),
+            deaths: AtomicU32::new(0),
+            greeting: OnceLock::new(),
+            spare: Mutex::new(None),
+        }
+    }
+
+    /// A process that has said hello.
+    fn start(&self) -> Result<Process, ProgramError> {
+        (self.stop.begin)();
+        files(&self.options)?;
+        let command = &self.options.command;
+        let mut process = Process::start(command).map_err(|error| {
+            let program = command.first().cloned().unwrap_or_default();
+            match error.kind() {
+                std::io::ErrorKind::NotFound => Complaint::NoProgram(program),
+                _ => Complaint::NoStart { program, reason: error.to_string() },
+            }
+        })?;
+        let number = self.started.fetch_add(1, Ordering::Relaxed);
+        let hello = Message::hello(&self.label, &self.options.options.0, number).line();
+        let until = Until { deadline: Deadline::NEVER, stop: &self.stop.flag };
+        let line = process.exchange(&hello, self.options.start(), until);
+        let line = line.map_err(|no_line| {
+            let silent = Complaint::NoHello(self.options.start_s);
+            self.failed(&mut process, no_line, silent)
+        })?;
+        let greeting = Greeting::read(&line).map_err(|complaint| {
+            let last_words = process.last_words();
+            ProgramError { line: Some(line), last_words, ..complaint.into() }
+        })?;
+        let first = self.greeting.get_or_init(|| greeting.clone());
+        if *first != greeting {
+            let [before, now] = [first, &greeting].map(|hello| format!("{} {}", hello.name, hello.version));
+            return Err(Complaint::Changed { before, now }.into());
+        }
+        Ok(process)
+    }
+
+    /// What a process does that sends no line; it is of no use any more.
+    fn failed(&self, process: &mut Process, no_line: NoLine, silent: Complaint) -> ProgramError {
+        let complaint = match no_line {
+            NoLine::Silent => silent,
+            NoLine::Late => Complaint::Stopped,
+            NoLine::TooLong => Complaint::LongLine,
+            NoLine::Refused(error) => Complaint::Unheard(error.to_string()),
+            NoLine::Ended => {
+                self.deaths.fetch_add(1, Ordering::Relaxed);
+                Complaint::Ended(process.end())
+            }
+        };
+        ProgramError { last_words: process.last_words(), ..complaint.into() }
+    }
+
+    /// The process that waits for its first session, or else a new one.
+    fn process(&self) -> Result<Process, ProgramError> {
+        let spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let is_of_use = |spare: &Result<Process, _>| spare.as_ref().map_or(true, |there| !there.is_over());
+        spare.filter(is_of_use).unwrap_or_else(|| self.start())
+    }
+
+    /// Starts a process for its hello, unless there was one.
+    fn greeting(&self) -> Option<&Greeting> {
+        if self.greeting.get().is_none() {
+            let mut spare = self.spare.lock().unwrap_or_else(PoisonError::into_inner);
+            if self.greeting.get().is_none() && spare.is_none() {
+                *spare = Some(self.start());
+            }
+        }
+        self.greeting.get()
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let spare = self.spare.get_mut().unwrap_or_else(PoisonError::into_inner).take();
+        let spare = spare.and_then(Result::ok).into_iter();
+        spare.for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.stop.flag));
+    }
+}
+
+/// The driver.
+struct Handle(Arc<Program>);
+
+impl Driver for Handle {
+    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        let process = Some(self.0.process()?);
+        Ok(Box::new(ProgramSession {
+            program: Arc::clone(&self.0),
+            process,
+            trial: None,
+            lost: None,
+            questions: 0,
+        }))
+    }
+
+    fn basis(&self) -> Basis {
+        match self.0.greeting() {
+            Some(Greeting { is_deterministic: false, .. }) => Basis::Undetermined,
+            _ => Basis::Question,
+        }
+    }
+
+    fn fingerprint(&self) -> Option<String> {
+        let Some(greeting) = self.0.greeting() else {
+            return Some("a program that does not start".to_owned());
+        };
+        Some(fingerprint(&self.0.options, greeting).unwrap_or_else(|complaint| complaint.to_string()))
+    }
+
+    fn labelled(&self, label: &str) -> Option<Arc<dyn Driver>> {
+        let Program { options, stop, .. } = &*self.0;
+        let program = Program::new(options.clone(), label.to_owned(), stop.clone());
+        Some(Arc::new(Self(Arc::new(program))))
+    }
+
+    fn gave_up(&self) -> Option<String> {
+        let is_enough = self.0.deaths.load(Ordering::Relaxed) >= MOST_DEATHS;
+        is_enough.then(|| format!("its program ended by itself in {MOST_DEATHS} trials in a row"))
+    }
+}
+
+/// A process at work.
+struct ProgramSession {
+    program: Arc<Program>,
+    process: Option<Process>,
+    /// Seed and scenario of the trial.
+    trial: Option<(u64, String)>,
+    /// Why the process of this trial is no more.
+    lost: Option<PolicyError>,
+    questions: u64,
+}
+
+impl ProgramSession {
+    fn ask(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        let Some(mut process) = self.process.take() else {
+            return Err(self.lost.clone().unwrap_or(PolicyError::Late));
+        };
+        self.questions += 1;
+        let id = self.questions;
+        let trial = self.trial.as_ref().map(|(seed, scenario)| Trial { seed: *seed, scenario });
+        let line = Message::Question { id, trial, question: &asked.question.without_truth() }.line();
+        if line.len() > MOST_BYTES {
+            return Err(self.lose(ProgramError::from(Complaint::LongQuestion), asked.question));
+        }
+        let until = Until { deadline: asked.deadline, stop: &self.program.stop.flag };
+        let line = match process.exchange(&line, self.program.options.timeout(), until) {
+            Ok(line) => line,
+            Err(NoLine::Late) => {
+                self.lost = Some(PolicyError::Late);
+                return Err(PolicyError::Late);
+            }
+            Err(no_line) => {
+                let silent = Complaint::Silent(self.program.options.timeout_s);
+                let error = self.program.failed(&mut process, no_line, silent);
+                return Err(self.lose(error, asked.question));
+            }
+        };
+        let complaint = match decision(&line, id, asked.question) {
+            Ok(decision) => {
+                self.process = Some(process);
+                return Ok(decision);
+            }
+            Err(complaint) => complaint,
+        };
+        let last_words = process.last_words();
+        let is_in_step =
+            matches!(complaint, Complaint::GaveUp(_) | Complaint::Decision(_) | Complaint::Assignment(_));
+        let has_line = !matches!(complaint, Complaint::GaveUp(_));
+        let error = ProgramError { line: has_line.then_some(line), last_words, ..complaint.into() };
+        if is_in_step {
+            self.process = Some(process);
+            return Err(ProgramError { round: Some(asked.question.round), ..error }.into());
+        }
+        Err(self.lose(error, asked.question))
+    }
+
+    /// Notes that a process came to the end of a trial.
+    fn end_trial(&mut self) {
+        if self.trial.is_some() && self.process.is_some() && self.questions > 0 {
+            self.program.deaths.store(0, Ordering::Relaxed);
+        }
+    }
+
+    /// Notes that the process of this trial is no more.
+    fn lose(&mut self, error: ProgramError, question: &Question) -> PolicyError {
+        let error = PolicyError::from(ProgramError { round: Some(question.round), ..error });
+        self.lost = Some(error.clone());
+        error
+    }
+}
+
+impl Session for ProgramSession {
+    fn reset(&mut self, start: &TrialStart<'_>) -> Result<(), PolicyError> {
+        let is_same = self
+            .trial
+            .as_ref()
+            .is_some_and(|(seed, scenario)| *seed == start.seed && scenario == start.scenario);
+        match (&self.lost, is_same) {
+            // What is late is told by the next question.
+            (None | Some(PolicyError::Late), true) => return Ok(()),
+            (Some(lost), true) => return Err(lost.clone()),
+            (_, false) => {}
+        }
+        self.end_trial();
+        self.trial = Some((start.seed, start.scenario.to_owned()));
+        if self.process.is_none() {
+            self.lost = None;
+            self.process = Some(self.program.process().map_err(|error| {
+                let error = PolicyError::from(error);
+                self.lost = Some(error.clone());
+                error
+            })?);
+        }
+        Ok(())
+    }
+
+    fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        self.ask(asked)
+    }
+}
+
+impl Drop for ProgramSession {
+    fn drop(&mut self) {
+        self.end_trial();
+        let process = self.process.take();
+        process
+            .into_iter()
+            .for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.program.stop.flag));
+    }
+}

@@ -1,0 +1,128 @@
+//! What is wrong with a program, in one sentence for the person who can mend it.
+
+use std::fmt;
+
+use rne_core::{AssignmentError, PolicyError, SCHEMA_VERSION};
+use thiserror::Error;
+
+use crate::process::End;
+
+/// Version of the lines between the command and a program.
+pub(crate) const PROTOCOL: u64 = 1;
+
+/// So many bytes of a line are shown.
+const SHOWN_BYTES: usize = 200;
+
+/// What is wrong.
+#[derive(Debug, Clone, Error)]
+pub(crate) enum Complaint {
+    #[error("its command cannot be started: there is no program {0:?}")]
+    NoProgram(String),
+    #[error("its command cannot be started: {program:?}: {reason}")]
+    NoStart { program: String, reason: String },
+    #[error("sources: no file matches {0:?}")]
+    NoSource(String),
+    #[error("{path:?}, which decides its answers, cannot be read: {reason}")]
+    Unreadable { path: String, reason: String },
+    #[error("it sent no hello within {0} s (start_s)")]
+    NoHello(f64),
+    #[error("it was told to stop")]
+    Stopped,
+    #[error("it did not answer within {0} s (timeout_s)")]
+    Silent(f64),
+    #[error("{0}")]
+    Ended(End),
+    #[error("it cannot be heard: {0}")]
+    Unheard(String),
+    #[error("it sent a line of more than 16 MiB")]
+    LongLine,
+    #[error("the question has more than 16 MiB")]
+    LongQuestion,
+    #[error("it sent a line that is not UTF-8")]
+    NotUtf8,
+    #[error("it sent a line that is not JSON ({0}); what it prints for people belongs on its standard error")]
+    NotJson(String),
+    #[error("it sent {0}, which is no JSON; leave such a field out, or write null")]
+    NotFinite(&'static str),
+    #[error("it sent a message whose type is {found}, expected {expected}")]
+    Type { found: String, expected: &'static str },
+    #[error("its hello speaks protocol {0}; this program speaks protocol {PROTOCOL}")]
+    Protocol(String),
+    #[error("its hello has schema_version {0}; this program has questions of version {SCHEMA_VERSION}")]
+    Schema(String),
+    #[error("{field} of its hello must be {rule}, found {found}")]
+    Hello { field: &'static str, rule: &'static str, found: String },
+    #[error("its hello changed while it was running: it was {before}, and is now {now}")]
+    Changed { before: String, now: String },
+    #[error("it answered question {found}, expected an answer to question {expected}")]
+    Id { found: String, expected: u64 },
+    #[error("its decision cannot be read: {0}")]
+    Decision(String),
+    #[error("its decision does not answer the question: {0}")]
+    Assignment(AssignmentError),
+    #[error("it gave up: {0}")]
+    GaveUp(String),
+}
+
+impl fmt::Display for End {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Status(status) => write!(f, "it exited with status {status}"),
+            Self::Signal(signal) => write!(f, "it was ended by signal {signal}"),
+            Self::Closed => f.write_str("it closed its standard output"),
+        }
+    }
+}
+
+/// A complaint, with all that helps to mend it.
+#[derive(Debug, Clone)]
+pub(crate) struct ProgramError {
+    /// What is wrong.
+    pub(crate) complaint: Box<Complaint>,
+    /// The round whose question waits.
+    pub(crate) round: Option<u32>,
+    /// The line as it was sent.
+    pub(crate) line: Option<Vec<u8>>,
+    /// The last lines of the standard error.
+    pub(crate) last_words: Vec<String>,
+}
+
+impl From<Complaint> for ProgramError {
+    fn from(complaint: Complaint) -> Self {
+        Self { complaint: Box::new(complaint), round: None, line: None, last_words: Vec::new() }
+    }
+}
+
+impl From<ProgramError> for PolicyError {
+    fn from(error: ProgramError) -> Self {
+        match *error.complaint {
+            Complaint::Silent(_) => Self::Slow(error.to_string()),
+            _ => Self::Other(error.to_string()),
+        }
+    }
+}
+
+impl fmt::Display for ProgramError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(round) = self.round {
+            write!(f, "round {round}: ")?;
+        }
+        write!(f, "{}", self.complaint)?;
+        if let Some(line) = &self.line {
+            write!(f, "; its line: {}", shown(line))?;
+        }
+        if !self.last_words.is_empty() {
+            write!(f, "\nits standard error ends with:")?;
+        }
+        self.last_words.iter().try_for_each(|line| write!(f, "\n  {line}"))
+    }
+}
+
+/// The first bytes of a line, up to a whole character.
+fn shown(line: &[u8]) -> String {
+    let end = (0..=SHOWN_BYTES.min(line.len())).rev();
+    let is_boundary = |end: &usize| line.get(*end).is_none_or(|byte| byte & 0xC0 != 0x80);
+    let end = end.into_iter().find(is_boundary).unwrap_or_default();
+    let more = if end < line.len() { format!(" ... ({} bytes)", line.len()) } else { String::new() };
+    format!("{}{more}", String::from_utf8_lossy(&line[..end]))
+}
