@@ -53,7 +53,7 @@ fn what_is_no_decision_is_refused() {
     assert_eq!(
         refused(r#"{"schema_version": 2, "groups": []}"#),
         "not the JSON of a decision: unknown field `groups`, expected one of `schema_version`, `assignment`, \
-         `score`, `proven_optimal`, `upper_bound`, `gap_percent`, `alternatives`, `account` at line 1 column \
+         `score`, `proven_optimal`, `upper_bound`, `gap_percent`, `alternatives`, `account`, `believed` at line 1 column \
          30"
     );
     assert_eq!(

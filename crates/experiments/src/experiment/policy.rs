@@ -53,7 +53,7 @@ impl PolicySpec {
         let (label, rest) = label_and_rest(text);
         let (name, options) = name_and_options(rest);
         if !registry.names().contains(&name) {
-            registry.make(name, "").map_err(Failure::input)?;
+            registry.parse(rest).map_err(Failure::input)?;
         }
         let options = parse_options(options)?;
         let guide =
