@@ -340,12 +340,17 @@ impl Deref for Catalogue {
 }
 
 impl Catalogue {
-    /// All metrics of a scenario: of its tasks, in its words; those of reports where it has the section
-    /// `reports`, `medium` or `deceit`.
+    /// All metrics of a scenario: of its tasks, in its words; those of reports where the base
+    /// goes by reports.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
+        Self::of_cases(scenario, scenario.goes_by_reports())
+    }
+
+    /// The same for a sweep over a scenario, in any case of which the base may go by reports.
+    pub(crate) fn of_cases(scenario: &Scenario, goes_by_reports: bool) -> Self {
         let mut all = Self::with(&task_names(scenario), &scenario.words);
-        if scenario.reports.is_some() || scenario.medium.is_some() || !scenario.deceit.is_empty() {
+        if goes_by_reports {
             all.metrics.extend(OF_REPORTS.iter().flat_map(|of| of.metrics(&[], &scenario.words)));
         }
         all

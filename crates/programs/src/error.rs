@@ -13,10 +13,20 @@ pub(crate) const PROTOCOL: u64 = 1;
 /// So many bytes of a line are shown.
 const SHOWN_BYTES: usize = 200;
 
+/// What is meant by a command that is a file of this folder.
+fn hint(program: &str) -> String {
+    let is_here = std::path::Path::new(program).is_file();
+    if is_here {
+        format!("; did you mean \"./{program}\", or an interpreter before it?")
+    } else {
+        String::new()
+    }
+}
+
 /// What is wrong.
 #[derive(Debug, Clone, Error)]
 pub(crate) enum Complaint {
-    #[error("its command cannot be started: there is no program {0:?}")]
+    #[error("its command cannot be started: there is no program {0:?}{hint}", hint = hint(.0))]
     NoProgram(String),
     #[error("its command cannot be started: {program:?}: {reason}")]
     NoStart { program: String, reason: String },

@@ -50,6 +50,11 @@ impl Registry {
             }
             return self.make(name, options);
         };
+        if written.rule.is_empty() || guide.is_empty() {
+            let side =
+                if guide.is_empty() { "an estimator must follow" } else { "a policy must stand before" };
+            return Err(refused(format!("{side} `<-`: RULE <- ESTIMATOR | USE")));
+        }
         let rule = self.make(name, options)?;
         if rule.it.needs_trial() {
             let reason =

@@ -24,8 +24,8 @@ pub struct Breakdown {
     pub has_room: bool,
     /// The largest number of liars up to which the policy is shown to be better than a draw all along.
     pub safe: Option<usize>,
-    /// The smallest number of liars with which it is shown not to be: worse than a draw, or within the
-    /// margin of it.
+    /// The smallest number of liars, above that, with which it is shown not to be: worse than a draw, or
+    /// within the margin of it.
     pub broken: Option<usize>,
 }
 
@@ -40,7 +40,8 @@ impl Breakdown {
             interval.is_some_and(|[low, high]| high < margin && (low > -margin || high < 0.0))
         };
         let kept = intervals.iter().take_while(|it| is_better(it)).count();
-        let broken = intervals.iter().position(is_broken).filter(|_| kept > 0);
+        let broken = intervals[kept..].iter().position(is_broken).map(|place| kept + place);
+        let broken = broken.filter(|_| kept > 0);
         Self { has_room: kept > 0, safe: kept.checked_sub(1), broken, intervals }
     }
 }
@@ -117,6 +118,13 @@ mod tests {
         assert!(wrong <= 16, "{wrong} of 200: more than 5 % and three standard errors");
         let sharp = found.iter().filter(|it| it.safe == Some(2) && it.broken == Some(4)).count();
         assert!(sharp > 100, "{sharp} of 200 name 2 and 4");
+    }
+
+    /// An interval between 0 and the margin is shown to be better, and is not counted as broken as well.
+    #[test]
+    fn better_by_less_than_the_margin_is_better() {
+        let found = Breakdown::of(&differences(1)[..3], 100.0, 0.95);
+        assert_eq!((found.safe, found.broken), (Some(2), None));
     }
 
     #[test]

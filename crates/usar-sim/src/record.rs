@@ -172,7 +172,7 @@ pub struct LinkRecord {
     pub to: Option<u32>,
     /// Messages over the medium.
     pub sent: u64,
-    /// Those that were heard.
+    /// Those that were heard; others were lost, or are under way.
     pub heard: u64,
     /// Their mean delay, in seconds; absent if there were none.
     pub delay_s: Option<f64>,
@@ -185,7 +185,7 @@ impl HeardRecord {
             from: ends.from.0,
             to: ends.to.map(|to| to.0),
             sent: link.sent,
-            heard: link.sent - link.lost,
+            heard: link.heard,
             delay_s: link.mean_delay_s(),
         };
         Self {

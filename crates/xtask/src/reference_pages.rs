@@ -67,9 +67,13 @@ fn events() -> String {
         // A kind with fields is an object with one property: its name.
         let name = variant["const"].as_str().or(variant["required"][0].as_str()).unwrap_or_default();
         let inside = &variant["properties"][name];
-        let fields = inside["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
+        let required = inside["required"].as_array().into_iter().flatten().filter_map(Value::as_str);
+        let mut fields: Vec<&str> = required.collect();
+        // Fields that may be absent come last.
+        let all = inside["properties"].as_object().into_iter().flatten().map(|(name, _)| name.as_str());
+        fields.extend(all.filter(|name| !fields.contains(name)).collect::<Vec<_>>());
         let field = |field| format!("`{field}`: {}", plain(&comment(&inside["properties"][field])));
-        let fields: Vec<String> = fields.map(field).collect();
+        let fields: Vec<String> = fields.into_iter().map(field).collect();
         let _ = writeln!(page, "| `{}` | {} | {} |", snake(name), comment(variant), fields.join("; "));
     }
     page

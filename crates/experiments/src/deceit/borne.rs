@@ -32,6 +32,9 @@ pub struct Price {
     pub policy: String,
     /// Label of the policy without.
     pub rule: String,
+    /// The lie, or the world; lies with the same price as an earlier one are left out, as all are where
+    /// nobody lies.
+    pub lie: String,
     /// The first minus the second.
     pub difference: Difference,
 }
@@ -104,7 +107,7 @@ impl Deceit {
         for (of, value) in &experiment.plan.margins {
             margin = margin.or((experiment.metrics.named(of)? == metric).then_some(*value));
         }
-        let hears = |policy: &usize| deaf_guide(&experiment.policies[*policy].plain()).is_none();
+        let hears = |policy: &usize| deaf_guide(&experiment.policies[*policy]).is_none();
         let others = (0..experiment.policies.len()).filter(|policy| *policy != of_draw).filter(hears);
         let pairs = others.flat_map(|policy| rows.lies.iter().map(move |lie| (policy, lie)));
         Ok(Self {
@@ -155,28 +158,43 @@ impl Rows<'_> {
         }
     }
 
-    /// Each policy behind an estimator against the same one without, among honest robots of the first lie:
-    /// where nobody lies all lies are one.
+    /// Each policy behind an estimator against the same one without, among honest robots.
     fn prices(&self) -> Vec<Price> {
+        let policies = 0..self.folder.experiment().policies.len();
+        let pairs = policies.filter_map(|policy| Some((policy, self.rule_of(policy)?)));
+        let mut prices: Vec<Price> = Vec::new();
+        for (policy, rule) in pairs {
+            for lie in &self.lies {
+                let price = self.price(policy, rule, lie);
+                let is_known =
+                    |known: &Price| known.policy == price.policy && known.difference == price.difference;
+                if !prices.iter().any(is_known) {
+                    prices.push(price);
+                }
+            }
+        }
+        prices
+    }
+
+    /// The same policy without its estimator, if the sweep has it.
+    fn rule_of(&self, policy: usize) -> Option<usize> {
         let policies = &self.folder.experiment().policies;
-        let Some(honest) = self.lies.first().and_then(|lie| lie.cases.first()) else { return Vec::new() };
-        let rule_of = |policy: usize| {
-            let written = policies[policy].plain();
-            let parts = Written::of(&written);
-            parts.guide?;
-            policies.iter().position(|other| other.plain() == parts.rule)
+        let written = policies[policy].plain();
+        let parts = Written::of(&written);
+        parts.guide?;
+        policies.iter().position(|other| other.plain() == parts.rule)
+    }
+
+    fn price(&self, policy: usize, rule: usize, lie: &Lie) -> Price {
+        let pair = |trial: u32| {
+            let honest = *lie.cases.first()?;
+            Some(self.value(honest, policy, trial)? - self.value(honest, rule, trial)?)
         };
-        let price = |policy: usize| {
-            let rule = rule_of(policy)?;
-            let pair =
-                |trial: u32| Some(self.value(*honest, policy, trial)? - self.value(*honest, rule, trial)?);
-            let all: Vec<f64> = self.trials().filter_map(pair).collect();
-            let difference =
-                Difference { mean: Moments::of(&all).mean, interval: cautious::interval(&all, CONFIDENCE) };
-            let [policy, rule] = [policy, rule].map(|it| self.label(it).to_owned());
-            Some(Price { policy, rule, difference })
-        };
-        (0..policies.len()).filter_map(price).collect()
+        let all: Vec<f64> = self.trials().filter_map(pair).collect();
+        let interval = cautious::interval(&all, CONFIDENCE);
+        let difference = Difference { mean: Moments::of(&all).mean, interval };
+        let [policy, rule] = [policy, rule].map(|it| self.label(it).to_owned());
+        Price { policy, rule, lie: lie.name.clone(), difference }
     }
 
     fn judgements(&self) -> Result<Vec<Judgement>, Failure> {
@@ -185,8 +203,7 @@ impl Rows<'_> {
             ACCURACY.iter().map(|name| experiment.metrics.named(name)).collect::<Result<_, _>>()?;
         let mut judgements = Vec::new();
         for (policy, spec) in experiment.policies.iter().enumerate() {
-            let written = spec.plain();
-            let Some(guide) = deaf_guide(&written) else { continue };
+            let Some(guide) = deaf_guide(spec) else { continue };
             for lie in &self.lies {
                 for (case, liars) in lie.cases.iter().zip(&self.counts) {
                     let mean = |metric: &usize| {
@@ -195,7 +212,7 @@ impl Rows<'_> {
                             .filter_map(|trial| self.folder.value((*case, policy, trial), *metric));
                         Moments::of(&values.collect::<Vec<_>>()).mean
                     };
-                    let (guide, lie) = (guide.to_owned(), lie.name.clone());
+                    let (guide, lie) = (guide.clone(), lie.name.clone());
                     let values = places.iter().map(mean).collect();
                     judgements.push(Judgement { guide, lie, liars: *liars, values });
                 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rne_core::arrow::Written;
 
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, PolicySpec};
 use crate::{Failure, refuse};
 
 /// Confidence of every interval and of every statement about a breakdown.
@@ -31,10 +31,12 @@ pub(super) struct Lie {
     pub(super) cases: Vec<usize>,
 }
 
-/// The estimator behind a policy that hears nothing of what robots say: it changes no decision.
-pub(super) fn deaf_guide(policy: &str) -> Option<&str> {
-    match Written::of(policy) {
-        Written { rule: DEAF, guide } => guide,
+/// The estimator behind a policy that hears nothing of what robots say: it changes no decision, unless it
+/// leaves robots at home.
+pub(super) fn deaf_guide(policy: &PolicySpec) -> Option<String> {
+    let written = policy.plain();
+    match Written::of(&written) {
+        Written { rule: DEAF, guide } if !policy.made().it.leaves_idle() => guide.map(str::to_owned),
         _ => None,
     }
 }
@@ -55,6 +57,9 @@ pub(super) fn lies(experiment: &Experiment) -> Result<(Vec<u32>, Vec<Lie>), Fail
     let Some((axis, counts)) = axes.find_map(|(place, axis)| Some((place, counts(&axis.values)?))) else {
         refuse!("must have an axis of who lies, such as \"deceit[0].who\": [Count(0), Count(1), Count(2)]");
     };
+    if !counts.contains(&0) {
+        refuse!("{}: must have Count(0), to compare with honest robots", experiment.axes[axis].path);
+    }
     let mut order: Vec<usize> = (0..counts.len()).collect();
     order.sort_by_key(|place| counts[*place]);
     let mut lies: BTreeMap<usize, Lie> = BTreeMap::new();

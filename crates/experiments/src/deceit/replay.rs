@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
-use rne_core::{Asked, Assignment, Deadline, PolicyError, Question, Session, TrialStart};
+use rne_core::{Asked, Assignment, Deadline, Member, PolicyError, Question, Session, TrialStart};
 use statistics::{Moments, cautious};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
@@ -114,7 +114,7 @@ fn of_trial(
     let mut trial = Simulation::new(scenario, played.seed).map_err(|error| failed(&error))?;
     let outcomes: BTreeMap<u32, &PlayedDecision> =
         played.decisions.iter().map(|decision| (decision.question.round, decision)).collect();
-    let mut sums = vec![(0.0, 0_u32); sessions.len()];
+    let mut worths = vec![Some(Vec::new()); sessions.len()];
     loop {
         let question = match trial.advance() {
             Advance::Running => continue,
@@ -126,23 +126,33 @@ fn of_trial(
         }
         let decision = deaf.decide(&Asked::of(&question)).map_err(|error| failed(&error))?;
         if let Some(known) = outcomes.get(&question.round) {
-            if known.chosen != decision.assignment {
+            let team = trial.truth().unwrap_or_else(|| question.members.clone());
+            if known.chosen != decision.assignment || !is_of_world(known, &question, &team) {
                 refuse!("the study is of another world: seed {}, round {}", played.seed, question.round);
             }
             let survey = known.survey();
             let values = values(&survey, objective);
-            for (session, sum) in sessions.iter_mut().zip(&mut sums) {
-                if let Some(difference) =
-                    worth(&mut **session, &question, &values).map_err(|error| failed(&error))?
-                {
-                    sum.0 += difference;
-                    sum.1 += 1;
+            for (session, worths) in sessions.iter_mut().zip(&mut worths) {
+                // One answer that was not played, and the mean would be of some of the decisions only.
+                match worth(&mut **session, &question, &values).map_err(|error| failed(&error))? {
+                    Some(one) => worths.iter_mut().for_each(|worths| worths.push(one)),
+                    None => *worths = None,
                 }
             }
         }
         trial.assign(decision).map_err(|error| failed(&error))?;
     }
-    Ok(sums.into_iter().map(|(sum, count)| (count > 0).then(|| sum / f64::from(count))).collect())
+    Ok(worths.into_iter().map(|worths| Moments::of(&worths?).mean).collect())
+}
+
+/// Whether a decision of a study is that of this question: the same tasks and sizes for the same team, which
+/// may have said something else of itself.
+fn is_of_world(known: &PlayedDecision, question: &Question, team: &[Member]) -> bool {
+    let asked = &known.question;
+    let is_same_team = known.truth.as_deref().unwrap_or(&asked.members) == team;
+    let tables =
+        asked.tasks == question.tasks && asked.needs == question.needs && asked.roles == question.roles;
+    tables && asked.quotas == question.quotas && is_same_team
 }
 
 /// The value of each assignment that was played and has one.

@@ -204,7 +204,8 @@ impl Experiment {
         };
         let ids = |case| policies.iter().enumerate().map(|policy| id(case, policy)).collect();
         let ids = cases.iter().map(ids).collect();
-        let metrics = Catalogue::of(&base);
+        let by_reports = base.goes_by_reports() || cases.iter().any(|case| case.scenario.goes_by_reports());
+        let metrics = Catalogue::of_cases(&base, by_reports);
         let plan = plan.checked(&metrics)?;
         let has = |label: &String| policies.iter().any(|policy| policy.label == *label);
         let plan = AnalysisPlan { baseline: plan.baseline.filter(has), ..plan };

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use rne_core::arrow::Written;
 use rne_core::question::hardest_first;
 use rne_core::{GroupSizes, Quota};
 use usar_sim::scenario::Scenario;
@@ -10,8 +11,8 @@ use super::Experiment;
 use super::policy::PolicySpec;
 
 impl Experiment {
-    /// What is doubtful about policies in the scenarios of the sweep, each once: estimators that need more raters
-    /// of a robot than a group has.
+    /// What is doubtful about policies in the scenarios of the sweep, each once: estimators that have nothing to
+    /// judge, or need more raters of a robot than a group has.
     #[must_use]
     pub fn doubts(&self) -> BTreeSet<String> {
         let of_case = |scenario: &Scenario| -> Vec<String> {
@@ -21,8 +22,16 @@ impl Experiment {
     }
 }
 
-/// A sentence about a policy whose estimator needs more raters than the smallest group has.
+/// A sentence about a policy whose estimator has nothing to judge, or needs more raters than the smallest group
+/// has.
 fn doubt(policy: &PolicySpec, scenario: &Scenario) -> Option<String> {
+    if Written::of(policy.written()).guide.is_some() && !scenario.goes_by_reports() {
+        let name = &scenario.name;
+        let label = &policy.label;
+        return Some(format!(
+            "{label}: {name} has no reports, medium or deceit: the estimator judges nothing"
+        ));
+    }
     let least = policy.made().it.least_raters()?;
     let size = smallest_group(scenario)?;
     let raters = size - 1;

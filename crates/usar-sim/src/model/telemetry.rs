@@ -11,7 +11,7 @@ use crate::geometry::{Outline, vector};
 use crate::ids::RobotId;
 use crate::scenario::{
     AtHome, Channel, Gauge, Happening, LevelSource, Lie, Loss, Mates, MediumRules, PathLoss, Scenario, Who,
-    Witness, is_about_reports, rounded_share,
+    Witness, rounded_share,
 };
 use crate::seed::{Purpose, stream};
 
@@ -110,14 +110,10 @@ impl TelemetryModel {
         robots: &[Arc<RobotModel>],
         seed: u64,
     ) -> Option<Self> {
-        let events = || scenario.timeline.iter().map(|moment| &moment.event);
-        let is_absent = scenario.reports.is_none()
-            && scenario.medium.is_none()
-            && scenario.deceit.is_empty()
-            && !events().any(is_about_reports);
-        if is_absent {
+        if !scenario.goes_by_reports() {
             return None;
         }
+        let events = || scenario.timeline.iter().map(|moment| &moment.event);
         let rules = scenario.reports.clone().unwrap_or_default();
         let gauges = |name: &String| {
             let gauges = rules.sensors.get(name).copied().unwrap_or_default();

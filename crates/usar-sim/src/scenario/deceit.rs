@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Scenario;
 use super::checker::{Checker, meant, shown};
 use super::file::{Happening, ScenarioFile};
 use super::rules::BeliefSharing;
@@ -389,9 +390,21 @@ fn may_be_one(a: &Who, b: &Who) -> bool {
     }
 }
 
-/// Whether an event of the timeline is about what robots say.
-pub(crate) fn is_about_reports(event: &Happening) -> bool {
-    matches!(event, Happening::RobotLies { .. } | Happening::RobotIsHonest(_) | Happening::RobotDrops(_))
+impl Scenario {
+    /// Whether the base goes by reports: robots report, a medium carries what they say, or robots lie.
+    #[must_use]
+    pub fn goes_by_reports(&self) -> bool {
+        let is_about_reports = |event: &Happening| {
+            matches!(
+                event,
+                Happening::RobotLies { .. } | Happening::RobotIsHonest(_) | Happening::RobotDrops(_)
+            )
+        };
+        self.reports.is_some()
+            || self.medium.is_some()
+            || !self.deceit.is_empty()
+            || self.timeline.iter().any(|moment| is_about_reports(&moment.event))
+    }
 }
 
 #[cfg(test)]

@@ -37,8 +37,8 @@ pub struct Ends {
 pub struct Link {
     /// Messages that were sent.
     pub sent: u64,
-    /// Messages that were lost.
-    pub lost: u64,
+    /// Messages that were heard; others were lost, or are under way.
+    pub heard: u64,
     /// Delays of the messages that were heard, summed up, in seconds.
     pub delay_s: f64,
     /// Whether the link is in its bad state.
@@ -82,13 +82,14 @@ impl Channel {
         if medium.air_s > 0.0 {
             self.free_from_s = sent_s;
         }
-        let heard_s = sent_s + medium.delay_s;
-        if is_lost {
-            link.lost += 1;
-        } else {
-            link.delay_s += heard_s - time_s;
-        }
-        (!is_lost).then_some(heard_s)
+        (!is_lost).then_some(sent_s + medium.delay_s)
+    }
+
+    /// Notes that a message was heard, so long after it was sent, in seconds.
+    pub fn note_heard(&mut self, ends: Ends, delay_s: f64) {
+        let link = self.links.entry(ends).or_default();
+        link.heard += 1;
+        link.delay_s += delay_s;
     }
 }
 
@@ -103,8 +104,7 @@ impl Link {
     /// Mean delay of the messages that were heard, in seconds.
     #[must_use]
     pub fn mean_delay_s(&self) -> Option<f64> {
-        let heard = self.sent - self.lost;
-        (heard > 0).then(|| self.delay_s / heard as f64)
+        (self.heard > 0).then(|| self.delay_s / self.heard as f64)
     }
 
     /// Whether the chain of the link loses a message, and its step.
@@ -214,7 +214,10 @@ mod tests {
         let mut send = |robot| channel.send(&medium, sending(1, robot, Vector::ZERO, 1.0));
         let heard = [send(0), send(1)].map(Option::unwrap);
         assert!((heard[0] - 1.212_24).abs() < 1e-12 && (heard[1] - 1.224_48).abs() < 1e-12, "{heard:?}");
+        let ends = Ends { from: RobotId(1), to: None };
+        channel.note_heard(ends, heard[1] - 1.0);
         let (_, last) = channel.links().last().unwrap();
+        assert_eq!((last.sent, last.heard), (1, 1));
         assert!((last.mean_delay_s().unwrap() - 0.224_48).abs() < 1e-12);
     }
 

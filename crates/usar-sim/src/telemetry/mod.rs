@@ -62,6 +62,7 @@ struct Message {
     heard_s: f64,
     by: RobotId,
     sent_s: f64,
+    by_radio: bool,
     says: Says,
 }
 
@@ -295,8 +296,11 @@ impl Telemetry {
             let (at, to) = (robot.position, medium.base);
             self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s })
         });
+        let by_radio = medium.is_some();
         match heard_s {
-            Some(heard_s) => self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, says }),
+            Some(heard_s) => {
+                self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, by_radio, says })
+            }
             None => log.push(Event::Lost { robot: robot.id, to: None }),
         }
     }
@@ -306,7 +310,10 @@ impl Telemetry {
         let has_arrived = |message: &mut Message| message.heard_s <= time_s;
         let mut arrived: Vec<Message> = self.under_way.extract_if(.., has_arrived).collect();
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
-        for Message { heard_s, by, sent_s, says } in arrived {
+        for Message { heard_s, by, sent_s, by_radio, says } in arrived {
+            if by_radio {
+                self.channel.note_heard(Ends { from: by, to: None }, heard_s - sent_s);
+            }
             if heard_s > sent_s {
                 log.push(Event::Heard { robot: by, to: None, sent_s });
             }

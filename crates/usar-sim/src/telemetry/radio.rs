@@ -66,6 +66,9 @@ impl Telemetry {
         let has_arrived = |told: &mut ForMate| told.heard_s <= time_s;
         let mut arrived: Vec<ForMate> = self.for_mates.extract_if(.., has_arrived).collect();
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
+        for ForMate { from, to, sent_s, heard_s, .. } in &arrived {
+            self.channel.note_heard(Ends { from: *from, to: Some(*to) }, heard_s - sent_s);
+        }
         let late = arrived.iter().filter(|told| told.heard_s > told.sent_s);
         log.extend(late.map(|told| Event::Heard {
             robot: told.from,

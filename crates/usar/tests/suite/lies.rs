@@ -167,7 +167,7 @@ fn policies_are_judged_by_the_outcomes_of_all_assignments() {
     succeeds(&usar(here, "study regret all.ron --quiet"));
     let command = "study deceit lied.ron --replay results/all --quiet";
     let text = succeeds(&usar(here, command));
-    assert!(text.contains("rescuees per minute (1/min): 4 trials that DIS decided"), "{text}");
+    assert!(text.contains("rescuees per minute total (1/min): 4 trials that DIS decided"), "{text}");
     let json = succeeds(&usar(here, &format!("{command} --json")[..]));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let row = |policy: &str| json["policies"].as_array().unwrap().iter().find(|row| row["policy"] == policy);

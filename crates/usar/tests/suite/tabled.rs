@@ -78,7 +78,7 @@ fn every_column_of_every_table_is_in_the_dictionary() {
         serde_json::from_str(&std::fs::read_to_string(results.join("datapackage.json")).unwrap()).unwrap();
     let text = std::fs::read_to_string(results.join("columns.md")).unwrap();
     let resources = package["resources"].as_array().unwrap();
-    assert_eq!(resources.len(), 6);
+    assert_eq!(resources.len(), 7);
     for resource in resources {
         let table = resource["path"].as_str().unwrap();
         let mut rows = csv::Reader::from_path(results.join(table)).unwrap();

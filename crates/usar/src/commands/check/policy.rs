@@ -52,6 +52,9 @@ pub(super) fn check(
             spec.label
         );
     }
+    if rne_core::arrow::Written::of(spec.written()).guide.is_some() {
+        tell("note: these questions have no evidence, so that the estimator is not asked");
+    }
     let opened = |error: PolicyError| Failure::input(format!("policy {}: {error}", spec.label));
     let begun = Instant::now();
     let mut session = spec.made().open().map_err(opened)?;

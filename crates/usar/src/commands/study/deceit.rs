@@ -59,6 +59,10 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         if self.file.is_dir() {
+            let given = [("--replay", self.replay.is_some()), ("--out", self.out.is_some())];
+            if let Some((name, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+                return Err(Failure::input(format!("{name}: is for a sweep file, and not for a folder")));
+            }
             let folder = read_sweep(&self.file, registry)?;
             Deceit::check(folder.experiment()).map_err(Failure::input_at(self.file.display()))?;
             return self.print(&folder, out);
@@ -149,12 +153,14 @@ fn print_prices(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
         return Ok(());
     }
     writeln!(out, "\nThe price where nobody lies: a policy with its estimator minus the same without")?;
-    let mut table = headed(["policy", "difference", "95 % interval"]);
+    let mut table = headed(["policy", "where", "difference", "95 % interval"]);
     for price in &found.prices {
+        let has_one = found.prices.iter().filter(|other| other.policy == price.policy).count() == 1;
+        let place = if has_one { "everywhere" } else { &price.lie };
         let Difference { mean, interval } = &price.difference;
         let interval = interval.map_or("-".to_owned(), |[a, b]| format!("{} to {}", short(a), short(b)));
         let mean = mean.map_or("-".to_owned(), short);
-        table.add_row([price.policy.as_str().into(), right(&mean), right(&interval)]);
+        table.add_row([price.policy.as_str().into(), place.into(), right(&mean), right(&interval)]);
     }
     print_table(out, &table)
 }
@@ -181,8 +187,8 @@ fn as_json(found: &Deceit) -> serde_json::Value {
             "broken": one.breakdown.broken.map(|at| found.counts[at])})
     });
     let prices = found.prices.iter().map(|price| {
-        json!({"policy": price.policy, "rule": price.rule, "difference": price.difference.mean,
-            "interval": price.difference.interval})
+        json!({"policy": price.policy, "rule": price.rule, "lie": price.lie,
+            "difference": price.difference.mean, "interval": price.difference.interval})
     });
     let judgements = found.judgements.iter().map(|one| {
         let values: serde_json::Map<String, serde_json::Value> = ACCURACY
