@@ -68,7 +68,12 @@ mod tests {
 
     #[test]
     fn too_small_groups_are_told_with_their_size() {
-        let (scenario, _) = Scenario::load("../../scenarios/paper.ron".as_ref()).unwrap();
+        let path = "../../scenarios/paper.ron".as_ref();
+        let (paper, text) = Scenario::load(path).unwrap();
+        let text = text.replace("    duration_s: 600.0,", "    duration_s: 600.0,\n    medium: (),");
+        let scenario = Scenario::parse(&text, path).unwrap();
+        let silent = doubt(&PolicySpec::parse("RNE <- Kalman", &policies::standard()).unwrap(), &paper);
+        assert!(silent.unwrap().ends_with("has no reports, medium or deceit: the estimator judges nothing"));
         let doubt = |text| doubt(&PolicySpec::parse(text, &policies::standard()).unwrap(), &scenario);
         assert_eq!(doubt("RNE <- Wmsr(f: 2)"), None, "6 members are 5 raters");
         assert_eq!(
