@@ -48,7 +48,7 @@ impl<T: ?Sized> Clone for Made<T> {
 }
 
 impl MadeMeasure {
-    /// A text that changes whenever its values may change: that of its [kind](Kind::from_sources).
+    /// A text that changes whenever its values may change: that of its [kind](crate::registry::Kind::from_sources).
     #[must_use]
     pub fn fingerprint(&self) -> Option<&str> {
         self.sources.as_deref()
@@ -57,7 +57,7 @@ impl MadeMeasure {
 
 impl MadeEstimator {
     /// A text that changes whenever its answers may change: that of the [estimator](Estimator::fingerprint),
-    /// or else that of the [kind](Kind::from_sources).
+    /// or else that of the [kind](crate::registry::Kind::from_sources).
     #[must_use]
     pub fn fingerprint(&self) -> Option<String> {
         self.it.fingerprint().or_else(|| self.sources.clone())
@@ -91,7 +91,7 @@ impl MadePolicy {
     }
 
     /// A text that changes whenever its answers may change: that of the [driver](Driver::fingerprint), or
-    /// else that of the [kind](Kind::from_sources).
+    /// else that of the [kind](crate::registry::Kind::from_sources).
     #[must_use]
     pub fn fingerprint(&self) -> Option<String> {
         self.it.fingerprint().or_else(|| self.sources.clone())

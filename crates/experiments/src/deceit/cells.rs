@@ -1,7 +1,5 @@
 //! The cells of a sweep of lies: which cases have which lie and how many liars.
 
-use std::collections::BTreeMap;
-
 use rne_core::arrow::Written;
 
 use crate::experiment::{Experiment, PolicySpec};
@@ -50,32 +48,35 @@ pub(super) fn draw(experiment: &Experiment) -> Result<usize, Failure> {
     }
 }
 
-/// The numbers of liars, and for each lie its cases in the order of the numbers.
+/// The numbers of liars, ascending, and for each lie its cases in the order of the numbers.
 pub(super) fn lies(experiment: &Experiment) -> Result<(Vec<u32>, Vec<Lie>), Failure> {
-    let counts = |values: &[String]| values.iter().map(|value| count(value)).collect::<Option<Vec<u32>>>();
-    let mut axes = experiment.axes.iter().enumerate();
-    let Some((axis, counts)) = axes.find_map(|(place, axis)| Some((place, counts(&axis.values)?))) else {
+    let Some(who) = experiment.axes.iter().position(|axis| counts(&axis.values).is_some()) else {
         refuse!("must have an axis of who lies, such as \"deceit[0].who\": [Count(0), Count(1), Count(2)]");
     };
-    if !counts.contains(&0) {
-        refuse!("{}: must have Count(0), to compare with honest robots", experiment.axes[axis].path);
+    let mut numbers = counts(&experiment.axes[who].values).unwrap_or_default();
+    numbers.sort_unstable();
+    if numbers.first() != Some(&0) {
+        refuse!("{}: must have Count(0), to compare with honest robots", experiment.axes[who].path);
     }
-    let mut order: Vec<usize> = (0..counts.len()).collect();
-    order.sort_by_key(|place| counts[*place]);
-    let mut lies: BTreeMap<usize, Lie> = BTreeMap::new();
-    let mut places: BTreeMap<String, usize> = BTreeMap::new();
+    let mut lies: Vec<Lie> = Vec::new();
     for (number, case) in experiment.cases.iter().enumerate() {
-        let others = case.values.iter().enumerate().filter(|(place, _)| *place != axis);
+        let others = case.values.iter().enumerate().filter(|(place, _)| *place != who);
         let name = others.map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(", ");
-        let next = places.len();
-        let place = *places.entry(name.clone()).or_insert(next);
-        let lie = lies.entry(place).or_insert_with(|| Lie { name, cases: vec![0; counts.len()] });
-        let of = experiment.axes[axis].values.iter().position(|value| *value == case.values[axis]);
-        if let Some(at) = of.and_then(|of| order.iter().position(|place| *place == of)) {
-            lie.cases[at] = number;
+        let place = lies.iter().position(|lie| lie.name == name).unwrap_or(lies.len());
+        if place == lies.len() {
+            lies.push(Lie { name, cases: vec![0; numbers.len()] });
+        }
+        let liars = count(&case.values[who]);
+        if let Some(at) = numbers.iter().position(|number| Some(*number) == liars) {
+            lies[place].cases[at] = number;
         }
     }
-    Ok((order.into_iter().map(|place| counts[place]).collect(), lies.into_values().collect()))
+    Ok((numbers, lies))
+}
+
+/// The numbers in `Count(0)`, `Count(3)`; `None` if a value is another.
+fn counts(values: &[String]) -> Option<Vec<u32>> {
+    values.iter().map(|value| count(value)).collect()
 }
 
 /// The number in `Count(3)`.

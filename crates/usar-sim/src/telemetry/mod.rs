@@ -299,7 +299,7 @@ impl Telemetry {
         let by_radio = medium.is_some();
         match heard_s {
             Some(heard_s) => {
-                self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, by_radio, says })
+                self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, by_radio, says });
             }
             None => log.push(Event::Lost { robot: robot.id, to: None }),
         }

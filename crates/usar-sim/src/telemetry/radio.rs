@@ -82,7 +82,7 @@ impl Telemetry {
     pub(crate) fn phantom(&self, liar: &Robot, bounds: [Vector; 2], now: &Now<'_>) -> Option<Vector> {
         let rules = now.model.telemetry.as_ref()?;
         let [low, high] = bounds;
-        if !liar.is_able() || !(low.x <= high.x) {
+        if !liar.is_able() || low.x > high.x {
             return None;
         }
         let made_up = |lie: &Lie| matches!(lie, Lie::PhantomRescuee { .. });
