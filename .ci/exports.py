@@ -68,6 +68,6 @@ def check_table(path, kind):
 messages = check_log()
 tables = [(path, place / "csv" / f"{path.stem}.csv") for path in (place / "parquet").glob("*.parquet")]
 tables += [(path, path.with_suffix(".csv")) for path in (place / "sweep").glob("*.parquet")]
-assert len(tables) == 10, tables
+assert len(tables) == 11, tables
 count = sum(check_table(path, kind) for path, kind in tables)
 print(f"exports: {messages} messages and {count} rows of {len(tables)} Parquet files are what the CSV tables have")
