@@ -150,6 +150,7 @@ results:
     target/release/usar sweep scenarios/sweeps/lies-aftershocks.ron
     target/release/usar sweep scenarios/sweeps/lies-field.ron
     target/release/usar study deceit scenarios/sweeps/trust-tunnel.ron
+    target/release/usar study regret scenarios/sweeps/trust-tunnel-regret.ron
     target/release/usar study deceit scenarios/sweeps/trust-convoy.ron
 
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes

@@ -77,7 +77,9 @@ impl Replay {
             .collect::<Result<_, Failure>>()?;
         let difference = |policy: usize, case: usize| {
             let rows = &played[case * trials.len()..(case + 1) * trials.len()];
-            let values: Vec<f64> = rows.iter().filter_map(|row| row[policy]).collect();
+            // One trial without a value, and the mean would be of some of the trials only.
+            let values: Vec<f64> =
+                rows.iter().map(|row| row[policy]).collect::<Option<_>>().unwrap_or_default();
             Difference { mean: Moments::of(&values).mean, interval: cautious::interval(&values, CONFIDENCE) }
         };
         let worth = |policy: usize, spec: &PolicySpec, lie: &Lie| Worth {
