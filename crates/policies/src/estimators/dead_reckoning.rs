@@ -1,8 +1,9 @@
 //! `DeadReckoning`: no robot is asked. A control: what reports are worth.
 //!
-//! [`Kalman`](super::kalman) in which a robot's own reports are never looked at: a level begins as the base
-//! expects and falls by what the fit group-mates said that they spent; a rest fills it. Its variance grows by
-//! 4 square percent points a round.
+//! [`Kalman`](super::kalman) that takes no level from a robot's own reports: a level begins as the base
+//! expects and falls by what the fit group-mates said that they spent; a rest fills it. A robot without a
+//! group counts as rested if it last said that a level was below its threshold. The variance grows by 4
+//! square percent points a round.
 
 use rne_core::estimate::as_said;
 use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};

@@ -25,6 +25,9 @@ impl State {
 
     /// Liars tell their group-mates of rescuees that do not exist.
     pub(super) fn make_up_rescuees(&mut self, model: &Model) {
+        if !model.telemetry.as_ref().is_some_and(|rules| rules.has_phantoms) {
+            return;
+        }
         let (mission, mut scene) = self.scene(model);
         let crew = &mission.crew;
         mission.with_telemetry(&mut scene, |telemetry, now, log| {

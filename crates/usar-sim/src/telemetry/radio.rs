@@ -91,10 +91,12 @@ impl Telemetry {
         let steps = |seconds: f64| (seconds / now.model.dt_s()).round() as u64;
         let into = now.step.saturating_sub(steps(told.window_s[0]));
         let every = steps(every_s).max(1);
+        if !into.is_multiple_of(every) {
+            return None;
+        }
         let mut draws = stream_at(rules.seed, Purpose::Phantom, u64::from(liar.id.0), into / every);
         let [x, y] = [draws.random::<f32>(), draws.random()];
-        let place = Vector::new(low.x + x * (high.x - low.x), low.y + y * (high.y - low.y));
-        into.is_multiple_of(every).then_some(place)
+        Some(Vector::new(low.x + x * (high.x - low.x), low.y + y * (high.y - low.y)))
     }
 }
 
