@@ -292,7 +292,8 @@ impl<T: ?Sized + Send + Sync + 'static> Kind<T> {
         Self::new([name, about], written(&O::default()), Arc::new(make))
     }
 
-    fn without_options(name: &str, about: &str, it: Arc<T>) -> Self {
+    /// An entry without options.
+    pub fn without_options(name: &str, about: &str, it: Arc<T>) -> Self {
         let make = move |options: &str, _: &Registry| match options.trim() {
             "" | "()" => Ok((Arc::clone(&it), String::new())),
             text => Err(format!("it has no options, found {text:?}")),

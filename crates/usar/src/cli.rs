@@ -1,5 +1,6 @@
 //! The process: the command line is read, the command executed, and what came of it is the exit status.
 
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -40,13 +41,19 @@ pub fn main() -> ExitCode {
 #[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
     CompleteEnv::with_factory(|| completing(command())).var(ASKED).complete();
+    ExitCode::from(run(std::env::args_os(), policies))
+}
+
+/// Runs a command line, its program first, and returns the exit status of [`main`]: for a program of another
+/// language.
+pub fn run(line: impl IntoIterator<Item = OsString>, policies: Registry) -> u8 {
     let mut registry = with_oracle(policies);
     // A caller's policy of the same name stays.
     let _ = registry.add(programs::kind(&STOP, stop_on_signals));
-    usar_sim::scenario::carry(library::FILES);
+    library::carry();
     // A panic is a defect of the program. It is caught and reported in one sentence, never as a backtrace.
     std::panic::set_hook(Box::new(note_panic));
-    let matches = command().try_get_matches().unwrap_or_else(|error| {
+    let matches = command().try_get_matches_from(line).unwrap_or_else(|error| {
         if let Some(verb) = verb_for(&error) {
             tell(format_args!("error: {verb}"));
             std::process::exit(2);
@@ -68,10 +75,10 @@ pub fn main_with(policies: Registry) -> ExitCode {
     let result = result.and_then(|()| Ok(out.flush()?));
     programs::end_all();
     match result {
-        Ok(()) | Err(Failure::ClosedOutput) => ExitCode::SUCCESS,
+        Ok(()) | Err(Failure::ClosedOutput) => 0,
         Err(failure) => {
             tell(format_args!("error: {failure}"));
-            ExitCode::from(exit_status(&failure))
+            exit_status(&failure)
         }
     }
 }

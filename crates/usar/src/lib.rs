@@ -13,7 +13,8 @@ mod printable;
 mod recordings;
 mod running;
 
-pub use cli::{main, main_with};
+pub use cli::{main, main_with, run};
+pub use library::{carry, path as scenario_path};
 
 /// The program on the page about policies compiles.
 #[cfg(doctest)]

@@ -12,8 +12,13 @@ macro_rules! files {
     };
 }
 
+/// From now on, the scenarios that the program carries can be read by their paths.
+pub fn carry() {
+    usar_sim::scenario::carry(FILES);
+}
+
 /// Names and texts of the carried files: scenarios, and the sweep files that belong to them.
-pub(crate) const FILES: &[(&str, &str)] = files![
+const FILES: &[(&str, &str)] = files![
     "crowded.ron" "crowded.sweep.ron"
     "eight-needs.ron" "eight-needs.sweep.ron"
     "ground-only.ron" "ground-only.sweep.ron"
@@ -46,8 +51,11 @@ pub(crate) fn scenarios() -> impl Iterator<Item = (&'static str, &'static str)> 
 }
 
 /// Parses a path from the command line: what is on disk, or else a carried scenario of that name.
+///
+/// # Errors
+/// None: parsers of arguments may fail.
 #[expect(clippy::unnecessary_wraps, reason = "clap takes parsers that may fail")]
-pub(crate) fn path(text: &str) -> Result<PathBuf, Infallible> {
+pub fn path(text: &str) -> Result<PathBuf, Infallible> {
     let path = Path::new(text);
     let carried = if is_file(path) || text.ends_with('/') { None } else { named(text) };
     Ok(carried.map_or_else(|| path.to_owned(), |(file, _)| PathBuf::from(format!("{CARRIED}{file}"))))

@@ -17,6 +17,7 @@ mod view;
 
 use std::sync::Arc;
 
+use parry2d::math::Vector;
 use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, TrueLevels};
 use thiserror::Error;
 
@@ -128,6 +129,13 @@ impl Simulation {
     pub fn in_parallel(mut self) -> Self {
         self.scratch.use_all_threads();
         self
+    }
+
+    /// From now on, robots wish these velocities, by id, in metres a second and up to their top speeds, instead
+    /// of those along their routes (`None`). The right of way applies to them as the scenario says. Wishes are
+    /// no part of the state: a trial that resumes from a checkpoint or a snapshot goes along routes.
+    pub fn steer(&mut self, velocities: Option<Vec<Vector>>) {
+        self.scratch.steering = velocities;
     }
 
     /// The question that waits for an answer.

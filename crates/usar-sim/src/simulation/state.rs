@@ -65,6 +65,8 @@ pub(super) struct Scratch {
     conflict: conflict::Scratch,
     /// Whether the steps of a large team are done on all threads.
     in_parallel: bool,
+    /// See [`Simulation::steer`](super::Simulation::steer).
+    pub(super) steering: Option<Vec<Vector>>,
 }
 
 impl Scratch {
@@ -229,6 +231,10 @@ impl State {
         }
         for (mover, track) in movers.iter_mut().zip(team_mates::tracks(&self.world)) {
             (mover.position, mover.velocity) = (track.position, track.velocity);
+        }
+        for (mover, wish) in movers.iter_mut().zip(scratch.steering.iter().flatten()) {
+            let is_able = self.world.robots[mover.robot.index()].is_able();
+            mover.preferred = if is_able { wish.clamp_length_max(mover.speed) } else { Vector::ZERO };
         }
         let rules = &model.right_of_way;
         let directives = self.resolver.resolve(rules, &mut movers, &mut scratch.conflict, &mut self.log);

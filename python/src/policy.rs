@@ -1,0 +1,180 @@
+//! Policies written in Python.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+use experiments::experiment::{PolicySpec, with_oracle};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+use rne_core::{
+    Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Registry, Session, TrialStart,
+};
+
+use crate::answer::{asked, groups};
+use crate::errors::{raised, unanswered};
+
+/// Ends the programs of policies in other languages. Each of them is ended with its trial as well.
+static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+
+/// The policies that need no Python.
+static BUILT_IN: LazyLock<Registry> = LazyLock::new(|| {
+    let mut registry = with_oracle(policies::standard());
+    let _ = registry.add(programs::kind(&STOP, || ())); // its name is not taken
+    registry
+});
+
+/// A policy as Python hands it over: as on the command line, or an object of `usar._policies.Own`.
+#[derive(FromPyObject)]
+pub enum Given {
+    /// As on the command line.
+    Written(String),
+    /// One in Python.
+    Own {
+        /// Its name in tables.
+        name: String,
+        /// Called with a question, returns groups.
+        decide: Py<PyAny>,
+        /// A text that changes with its answers.
+        fingerprint: String,
+        /// Whether the same question always gets the same answer.
+        deterministic: bool,
+    },
+}
+
+/// A policy that stands in a call.
+pub fn given(policy: &Bound<'_, PyAny>) -> PyResult<Given> {
+    policy.py().import("usar._policies")?.call_method1("given", (policy,))?.extract()
+}
+
+/// The first exception that a policy has raised in a run.
+#[derive(Clone, Default)]
+pub struct Raised(Arc<Mutex<Option<Raise>>>);
+
+struct Raise {
+    error: PyErr,
+    policy: String,
+    seed: Option<u64>,
+    round: u32,
+}
+
+impl Raised {
+    /// Raises it as the cause of a `PolicyError`; goes on if there is none.
+    pub fn check(&self, py: Python<'_>) -> PyResult<()> {
+        let taken = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let Some(Raise { error, policy, seed, round }) = taken else { return Ok(()) };
+        if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+            return Err(error);
+        }
+        let trial = seed.map(|seed| format!(", seed {seed}")).unwrap_or_default();
+        let message = format!("policy {policy}{trial}, round {round}: {error}");
+        let raised = unanswered(py, message, [seed, Some(round.into())], &policy);
+        raised.set_cause(py, Some(error));
+        Err(raised)
+    }
+}
+
+/// The policies of a call: the built-in ones, programs, and those in Python.
+pub struct Policies {
+    /// With the policies in Python.
+    pub registry: Registry,
+    /// As on the command line.
+    pub written: Vec<String>,
+    /// What those in Python raise.
+    pub raised: Raised,
+}
+
+impl Policies {
+    /// Takes the policies of a call. An exception of one of them sets `stop`.
+    pub fn of(given: Vec<Given>, stop: &Arc<AtomicBool>) -> PyResult<Self> {
+        let mut registry = BUILT_IN.clone();
+        let raised = Raised::default();
+        let mut written = Vec::new();
+        for policy in given {
+            match policy {
+                Given::Written(text) => written.push(text),
+                Given::Own { name, decide, fingerprint, deterministic } => {
+                    let own = Own {
+                        name: name.clone(),
+                        decide,
+                        fingerprint,
+                        is_deterministic: deterministic,
+                        raised: raised.clone(),
+                        stop: Arc::clone(stop),
+                    };
+                    let driver: Arc<dyn Driver> = Arc::new(Handle(Arc::new(own)));
+                    let kind = PolicyKind::without_options(&name, "a policy in Python", driver);
+                    registry.add(kind).map_err(|error| PyValueError::new_err(error.to_string()))?;
+                    written.push(name);
+                }
+            }
+        }
+        Ok(Self { registry, written, raised })
+    }
+
+    /// The only policy.
+    pub fn spec(&self) -> PyResult<PolicySpec> {
+        let text = self.written.first().map_or("", String::as_str);
+        PolicySpec::parse(text, &self.registry).map_err(raised)
+    }
+}
+
+/// A policy in Python.
+struct Own {
+    name: String,
+    decide: Py<PyAny>,
+    fingerprint: String,
+    is_deterministic: bool,
+    raised: Raised,
+    stop: Arc<AtomicBool>,
+}
+
+impl Own {
+    fn ask(&self, question: &rne_core::Question) -> PyResult<Assignment> {
+        Python::attach(|py| {
+            let answer = self.decide.bind(py).call1((asked(py, question)?,))?;
+            let assignment = groups(&answer)?;
+            let checked = assignment.check(question);
+            checked.map_err(|error| PyValueError::new_err(error.to_string())).map(|()| assignment)
+        })
+    }
+}
+
+struct Handle(Arc<Own>);
+
+impl Driver for Handle {
+    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        Ok(Box::new(OwnSession { policy: Arc::clone(&self.0), seed: None }))
+    }
+
+    fn basis(&self) -> Basis {
+        if self.0.is_deterministic { Basis::Question } else { Basis::Undetermined }
+    }
+
+    fn fingerprint(&self) -> Option<String> {
+        Some(self.0.fingerprint.clone())
+    }
+}
+
+struct OwnSession {
+    policy: Arc<Own>,
+    seed: Option<u64>,
+}
+
+impl Session for OwnSession {
+    fn reset(&mut self, start: &TrialStart<'_>) -> Result<(), PolicyError> {
+        self.seed = Some(start.seed);
+        Ok(())
+    }
+
+    fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        let Own { name, raised, stop, .. } = &*self.policy;
+        self.policy.ask(asked.question).map(Decision::of).map_err(|error| {
+            let told = PolicyError::Other(error.to_string());
+            let (policy, round) = (name.clone(), asked.question.round);
+            let raise = Raise { error, policy, seed: self.seed, round };
+            raised.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(raise);
+            stop.store(true, Ordering::Relaxed);
+            told
+        })
+    }
+}

@@ -1,0 +1,23 @@
+"""The command `usar`."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+from ._usar import command
+
+
+def main() -> NoReturn:
+    """Run the command with the words of this process."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # the command has a way of its own to stop
+    sys.stdout.flush()
+    os._exit(command(["usar", *sys.argv[1:]]))
+
+
+if __name__ == "__main__":
+    assert Path(__file__).exists()
+    main()

@@ -1,0 +1,184 @@
+"""Sweeps and their folders of results."""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, Callable, Optional, Union
+
+from . import _usar
+from ._policies import given
+from ._types import Policy
+
+Policies = Union[Iterable[Policy], Mapping[str, Policy]]
+
+
+class Results:
+    """A folder of results.
+
+    Tables are data frames of pandas, or of polars where only that is installed, or else lists of dicts.
+    """
+
+    def __init__(self, path: Union[str, os.PathLike[str]], frames: Optional[str] = None) -> None:
+        """`frames` is "pandas", "polars" or "lists", for another form of tables."""
+        self.path = Path(path)
+        if not (self.path / "manifest.json").exists():
+            raise FileNotFoundError(f"{self.path}: no folder of results: it has no manifest.json")
+        if frames not in (None, "pandas", "polars", "lists"):
+            raise ValueError(f'frames must be "pandas", "polars" or "lists", found {frames!r}')
+        self._frames = frames
+        self._kept: Optional[tempfile.TemporaryDirectory[str]] = None
+
+    @property
+    def trials(self) -> Any:
+        """A row for each trial. Trials of the same `trial` and `case` are pairs."""
+        return self.table("trials")
+
+    @property
+    def rounds(self) -> Any:
+        """A row for each group in each round."""
+        return self.table("rounds")
+
+    @property
+    def groups(self) -> Any:
+        """A row for each robot in each round."""
+        return self.table("groups")
+
+    def table(self, name: str) -> Any:
+        """The table of this name: also `robots`, `series` and `links`."""
+        path = self.path / f"{name}.csv"
+        frames = self._frames or next((kind for kind in ("pandas", "polars") if _is_there(kind)), "lists")
+        if frames == "pandas":
+            import pandas
+
+            return pandas.read_csv(path, keep_default_na=False, na_values="")
+        if frames == "polars":
+            import polars
+
+            return polars.read_csv(path, infer_schema_length=None)
+        with path.open(newline="") as file:
+            return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(file)]
+
+    def __repr__(self) -> str:
+        return f"<usar.Results in {self.path}>"
+
+
+def sweep(
+    file: Union[str, os.PathLike[str], _usar.Scenario],
+    policies: Optional[Policies] = None,
+    trials: Optional[int] = None,
+    *,
+    out: Union[str, os.PathLike[str], None] = None,
+    jobs: Optional[int] = None,
+    first_seed: Optional[int] = None,
+    set: Optional[Mapping[str, Any]] = None,
+    progress: Union[bool, Callable[[int, int], None]] = True,
+    frames: Optional[str] = None,
+) -> Results:
+    """Run paired trials of several policies.
+
+    `file` is a scenario, the path of a scenario or a sweep file, or the name of one that the package has.
+    `policies` is a list, or a dict from names in tables to policies; without it, those of the file. With
+    `out`, finished trials stay there, and the same call goes on where it was interrupted or a policy
+    raised an exception; without it, they last as long as the results. `jobs` is the number of threads; a
+    policy in Python holds them up, because only one of them runs Python at a time. `progress` prints a
+    line on stderr, or is called with the numbers of trials that are done and that there are.
+
+    >>> import usar
+    >>> def by_id(question):
+    ...     ids = [[m["id"] for m in question["members"] if m["role"] == r] for r in range(3)]
+    ...     sizes = [quota["members"] for quota in question["quotas"]]
+    ...     return [[ids[r].pop() for r in range(3) for _ in range(sizes[r][task])] for task in range(2)]
+    >>> short = usar.Scenario.builtin("paper").set(duration_s=60)
+    >>> results = usar.sweep(short, policies=[by_id, "DIS"], trials=2, progress=False, frames="lists")
+    >>> [(row["policy"], row["trial"]) for row in results.trials]
+    [('by_id', 1), ('by_id', 2), ('DIS', 1), ('DIS', 2)]
+    """
+    kept = None if out is not None else tempfile.TemporaryDirectory(prefix="usar-")
+    path = Path(out) if out is not None else Path(kept.name if kept else "") / "results"
+    tell = _line if progress is True else progress or None
+    settings = [f"{field}={_usar.ron(value)}" for field, value in (set or {}).items()]
+    listed = None if policies is None else _listed(policies)
+    try:
+        _usar.sweep(file, listed, trials, first_seed, settings, path, jobs, tell)
+    finally:
+        if progress is True:
+            sys.stderr.write("\r\x1b[K" if sys.stderr.isatty() else "")
+    results = Results(path, frames)
+    results._kept = kept
+    return results
+
+
+def compare(
+    results: Union[Results, str, os.PathLike[str]],
+    metrics: Iterable[str] = (),
+    baseline: Optional[str] = None,
+    margins: Optional[Mapping[str, float]] = None,
+) -> list[dict[str, Any]]:
+    """Compare the policies of a sweep pair by pair, as `usar compare` does.
+
+    Each comparison has `metric`, `a`, `b`, `mean_a`, `mean_b`, `difference`, its 95 % `interval`, `p_holm`,
+    the `verdict`, and a sentence `in_words`. `margins` are the largest differences that do not matter.
+    """
+    chosen = [word for metric in metrics for word in ("--metric", metric)]
+    chosen += ["--baseline", baseline] if baseline else []
+    chosen += [word for metric, most in (margins or {}).items() for word in ("--margin", f"{metric}={most}")]
+    printed = _command("compare", str(_path(results)), "--json", *chosen)
+    return list(json.loads(printed)["comparisons"])
+
+
+def report(results: Union[Results, str, os.PathLike[str]], title: Optional[str] = None) -> Path:
+    """Write the page of a sweep into its folder, as `usar report` does, and return its path."""
+    path = _path(results)
+    _command("report", str(path), *(["--title", title] if title else []))
+    return path / "report.html"
+
+
+def _path(results: Union[Results, str, os.PathLike[str]]) -> Path:
+    return results.path if isinstance(results, Results) else Path(results)
+
+
+def _listed(policies: Policies) -> list[Any]:
+    if isinstance(policies, str):
+        raise TypeError(f"policies must be a list or a dict, found the text {policies!r}")
+    if isinstance(policies, Mapping):
+        return [given(policy, name) for name, policy in policies.items()]
+    return [given(policy) for policy in policies]
+
+
+def _command(*words: str) -> str:
+    """What the command prints, in a process of its own."""
+    done = subprocess.run([sys.executable, "-m", "usar", *words], capture_output=True, text=True)
+    if done.returncode == 0:
+        return done.stdout
+    raise (ValueError if done.returncode == 2 else RuntimeError)(done.stderr.strip().removeprefix("error: "))
+
+
+def _line(done: int, of: int) -> None:
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r{done} of {of} trials")
+        sys.stderr.flush()
+    elif done == of:
+        sys.stderr.write(f"{of} trials are done\n")
+
+
+def _is_there(module: str) -> bool:
+    return importlib.util.find_spec(module) is not None
+
+
+def _value(text: str) -> Any:
+    if text == "":
+        return None
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

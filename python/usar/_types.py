@@ -1,0 +1,84 @@
+"""What policies are asked and answer. The fields are those of docs/schemas/question.schema.json."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Callable, Optional, Protocol, TypedDict, Union
+
+
+class Need(TypedDict):
+    """A need that members report."""
+
+    name: str
+    weight: float
+
+
+class Task(TypedDict):
+    """A task that a group is to be formed for."""
+
+    name: str
+    difficulty: int
+    place: Optional[list[float]]
+    rescuees: Optional[int]
+    value: Optional[float]
+    requires: dict[str, float]
+    duration_s: Optional[float]
+    after: list[int]
+
+
+class Quota(TypedDict):
+    """How many members of a role each task gets: `Binding`, as sizes of `Parts`, or `Free`."""
+
+    members: list[int]
+    sizes: str
+
+
+class Member(TypedDict):
+    """What a robot reports of itself."""
+
+    id: int
+    role: int
+    home: list[float]
+    needs: list[float]
+    energy_level: Optional[float]
+    hp_level: Optional[float]
+
+
+class _Question(TypedDict):
+    schema_version: int
+    round: int
+    roles: list[str]
+    needs: list[Need]
+    tasks: list[Task]
+    quotas: list[Quota]
+    members: list[Member]
+    may_idle: bool
+    history: list[dict[str, Any]]
+    random_seed: str
+
+
+class Question(_Question, total=False):
+    """How is the team to be grouped? `evidence` is there in worlds that go by reports."""
+
+    evidence: dict[str, Any]
+
+
+class Answer(TypedDict, total=False):
+    """Groups, and the robots that stay at home where the question allows it."""
+
+    groups: Iterable[Iterable[int]]
+    idle: Iterable[int]
+
+
+Groups = Union[Iterable[Optional[Iterable[int]]], Answer]
+"""For each task, the ids of its group."""
+
+
+class Decides(Protocol):
+    """A policy with a method `decide`. May have `name`, `version` and `deterministic` as well."""
+
+    def decide(self, question: Question, /) -> Groups: ...
+
+
+Policy = Union[str, Callable[[Question], Groups], Decides]
+"""A name as on the command line, a function, or an object."""

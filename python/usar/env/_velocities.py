@@ -1,0 +1,119 @@
+"""Each robot is an agent that chooses its velocity (PettingZoo)."""
+
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy
+import numpy.typing
+from gymnasium import spaces
+from gymnasium.utils import seeding
+from pettingzoo import ParallelEnv
+
+from .._types import Policy
+from .._usar import Scenario, Simulation, group
+
+Array = numpy.typing.NDArray[numpy.float32]
+NEAREST = 5
+
+
+class Velocities(ParallelEnv[str, Array, Array]):
+    """Robots driven at `hz`, on the physics of the simulator.
+
+    An action is a velocity in shares of the top speed, in the plane. The mission goes on as always: `policy`
+    groups the team, robots have goals and load and deliver when they get there; only the way there is the
+    agents'. Right of way applies as the scenario says: `conflicts.resolver: None` is none, every other rule
+    is a filter between actions and motion. All get as reward what the team rescued since the last step.
+
+    An observation is, in shares of the arena: place, velocity (of the top speed), the vector to the next
+    point of the route, energy and HP, and the vectors to the five nearest robots.
+    """
+
+    metadata: dict[str, Any] = {"name": "usar_velocities_v0", "render_modes": []}
+    render_mode = None
+
+    def __init__(self, scenario: Scenario, policy: Policy = "DIS", hz: float = 10.0) -> None:
+        trial = Simulation(scenario, 1)
+        question = trial.until_asked()
+        if question is None:
+            raise ValueError(f"{scenario.name}: its trials ask no question, so that robots have nowhere to go")
+        self._steps = max(1, round(1.0 / (hz * trial.step_s)))
+        self._scenario, self._policy = scenario, policy
+        role_of = {member["id"]: question["roles"][member["role"]] for member in question["members"]}
+        self.possible_agents = [f"{role_of[robot]}_{robot}" for robot in range(scenario.robots)]
+        self.agents: list[str] = []
+        near = [f"near_{at}_{axis}" for at in range(NEAREST) for axis in "xy"]
+        self.feature_names = ["x", "y", "vx", "vy", "way_x", "way_y", "energy", "hp", *near]
+        box = spaces.Box(-1.0, 1.0, (len(self.feature_names),), numpy.float32)
+        self.observation_spaces = dict.fromkeys(self.possible_agents, box)
+        self.action_spaces = {
+            agent: spaces.Box(-1.0, 1.0, (2,), numpy.float32) for agent in self.possible_agents
+        }
+        self._draws = seeding.np_random()[0]
+        self._trial = trial
+
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
+        """The space of an agent's observations."""
+        return self.observation_spaces[agent]
+
+    def action_space(self, agent: str) -> spaces.Space[Any]:
+        """The space of an agent's velocities."""
+        return self.action_spaces[agent]
+
+    def reset(
+        self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
+    ) -> tuple[dict[str, Array], dict[str, dict[str, Any]]]:
+        """Begin the trial of a seed, or of one that is drawn."""
+        if seed is not None:
+            self._draws = seeding.np_random(seed)[0]
+        self._trial = Simulation(self._scenario, int(self._draws.integers(2**31)) if seed is None else seed)
+        self._trial.until_asked()
+        self._answer()
+        self.agents = self.possible_agents[:]
+        return self._observations(), {agent: {} for agent in self.agents}
+
+    def step(self, actions: dict[str, Array]) -> tuple[
+        dict[str, Array],
+        dict[str, float],
+        dict[str, bool],
+        dict[str, bool],
+        dict[str, dict[str, Any]],
+    ]:
+        """Drive for a period."""
+        trial, agents = self._trial, self.agents
+        wishes = numpy.array([actions[agent] for agent in self.possible_agents], numpy.float32)
+        trial.steer(wishes * trial.top_speeds[:, None])
+        before, left = trial.totals[0], self._steps
+        while left > 0 and trial.status is None:
+            left -= trial.step(left)
+            self._answer()
+        status = trial.status
+        told = self._observations(), dict.fromkeys(agents, float(trial.totals[0] - before))
+        ends = dict.fromkeys(agents, status not in (None, "completed")), dict.fromkeys(agents, status == "completed")
+        if status is not None:
+            self.agents = []
+        return *told, *ends, {agent: {} for agent in agents}
+
+    def _answer(self) -> None:
+        """Answer the question that waits, if there is one."""
+        question = self._trial.question
+        if question is not None:
+            self._trial.assign(group(question, self._policy))
+
+    def _observations(self) -> dict[str, Array]:
+        trial, arena = self._trial, numpy.array(self._trial.arena, numpy.float32)
+        places, speeds = trial.positions, numpy.maximum(trial.top_speeds, 1e-6)[:, None]
+        apart = (places[None] - places[:, None]) / arena
+        order = numpy.argsort((apart**2).sum(axis=2), axis=1, kind="stable")[:, 1 : NEAREST + 1]
+        near = numpy.take_along_axis(apart, order[:, :, None], axis=1)
+        padded = numpy.zeros((len(places), NEAREST, 2), numpy.float32)
+        padded[:, : near.shape[1]] = near
+        parts = [
+            2.0 * places / arena - 1.0,
+            trial.velocities / speeds,
+            (trial.waypoints - places) / arena,
+            trial.levels / 100.0,
+            padded.reshape(len(places), -1),
+        ]
+        rows = numpy.concatenate(parts, axis=1, dtype=numpy.float32, casting="same_kind").clip(-1.0, 1.0)
+        return dict(zip(self.possible_agents, rows))
