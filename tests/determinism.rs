@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Limits, Run, TrialKey, run_all};
+use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::{Asked, Question, Session};
@@ -236,4 +237,31 @@ fn the_order_of_trials_changes_nothing() {
 fn the_small_worlds_have_their_golden_hashes() {
     let expected = std::fs::read_to_string(golden::path()).unwrap();
     assert_eq!(golden::hashes(), expected, "numbers changed: see docs/determinism.md");
+}
+
+#[test]
+fn robots_go_where_they_are_steered_and_along_their_routes_again() {
+    let mut trial = Simulation::new(&paper(), 1).unwrap();
+    let Advance::Asks(Ask::Grouping(question)) = trial.advance() else { panic!("it asks first") };
+    let decision = policy("DIS").decide(&Asked::of(question)).unwrap();
+    trial.assign(decision).unwrap();
+    let places = |trial: &Simulation| -> Vec<Vector> {
+        trial.world().robots.iter().map(|robot| robot.position).collect()
+    };
+    let go =
+        |trial: &mut Simulation| (0..50).for_each(|_| assert!(matches!(trial.advance(), Advance::Running)));
+    let start = places(&trial);
+    trial.steer(Some(vec![Vector::ZERO; 12]));
+    go(&mut trial);
+    assert_eq!(places(&trial), start);
+    let mut unsteered = trial.checkpoint().resume();
+    trial.steer(Some(vec![Vector::new(0.0, 0.5); 12]));
+    go(&mut trial);
+    let moved = places(&trial).into_iter().zip(&start).map(|(now, then)| now - *then);
+    let north = moved.filter(|way| way.y > 0.2 && way.x.abs() < 0.2).count();
+    assert!(north >= 10, "{north} of 12 went north");
+    go(&mut unsteered);
+    let went =
+        places(&unsteered).into_iter().zip(&start).filter(|(now, then)| (*now - **then).length() > 0.3);
+    assert!(went.count() >= 10);
 }

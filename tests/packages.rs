@@ -58,14 +58,22 @@ fn locked(path: &str) -> BTreeSet<[String; 2]> {
     packages.map(|package| ["name", "version"].map(|field| value(package, field))).collect()
 }
 
-/// The page of the laboratory is built from the versions of the command: other ones would have other bits.
+/// The page of the laboratory and the Python package are built from the versions of the command: other ones
+/// would have other bits.
 #[test]
-fn the_page_of_the_laboratory_has_the_versions_of_the_command() {
-    let (page, command) = (locked("lab/Cargo.lock"), locked("Cargo.lock"));
-    let others: Vec<_> =
-        page.difference(&command).map(|[name, version]| format!("{name} {version}")).collect();
-    assert_eq!(others, ["usar-lab 0.1.0"]);
-    assert!(page.iter().any(|[name, _]| name == "rapier2d"));
+fn other_workspaces_have_the_versions_of_the_command() {
+    let command = locked("Cargo.lock");
+    let others = |workspace: &str| -> Vec<String> {
+        let theirs = locked(&format!("{workspace}/Cargo.lock"));
+        assert!(theirs.iter().any(|[name, _]| name == "rapier2d"));
+        theirs.difference(&command).map(|[name, _]| name.clone()).collect()
+    };
+    assert_eq!(others("lab"), ["usar-lab"]);
+    let python = others("python");
+    let belongs = |name: &String| {
+        ["pyo3", "pythonize", "target-lexicon", "usar-python"].iter().any(|own| name.starts_with(own))
+    };
+    assert!(python.len() == 8 && python.iter().all(belongs), "{python:?}");
 }
 
 #[test]
@@ -76,4 +84,5 @@ fn only_the_door_of_the_page_is_unsafe() {
         assert_eq!(is_unsafe, name == "door.rs", "{name}");
     }
     assert!(text("lab/Cargo.toml").contains("unsafe_code = \"deny\""));
+    assert!(text("python/Cargo.toml").contains("unsafe_code = \"forbid\""));
 }

@@ -17,7 +17,7 @@ use crate::errors::unusable;
 /// >>> Scenario.builtin("paper").set(duration_s=-1)
 /// Traceback (most recent call last):
 ///     ...
-/// usar.ScenarioError: usar:/paper.ron: duration_s must be from 1 to 86400, found -1
+/// usar.ScenarioError: usar:/paper.ron: duration_s must be a number from 1 to 86400, found -1
 #[pyclass(frozen, module = "usar._usar")]
 pub struct Scenario {
     pub(crate) it: Checked,
@@ -52,7 +52,7 @@ impl Scenario {
     /// text is RON, as after `--set`, so that a text in RON has quotes of its own.
     ///
     /// >>> from usar import Scenario
-    /// >>> Scenario.builtin("paper").set(duration_s=60, **{"mission.belief_sharing": "Own"})
+    /// >>> Scenario.builtin("paper").set(duration_s=60, **{"mission.belief_sharing": "WithNobody"})
     /// <usar.Scenario paper of 12 robots, 60 s>
     #[pyo3(signature = (**paths))]
     fn set(&self, py: Python<'_>, paths: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -84,7 +84,19 @@ impl Scenario {
         self.it.duration_s
     }
 
-    /// Number of robots.
+    /// Time of a step, in seconds.
+    #[getter]
+    fn step_s(&self) -> f64 {
+        self.it.step_s()
+    }
+
+    /// Length and width of the arena, in metres.
+    #[getter]
+    fn arena(&self) -> [f64; 2] {
+        self.it.arena_m
+    }
+
+    /// Number of robots, the most where it is drawn.
     #[getter]
     fn robots(&self) -> u32 {
         self.it.robots()

@@ -150,12 +150,6 @@ impl Simulation {
         self.it.time_s()
     }
 
-    /// Time of a step, in seconds.
-    #[getter]
-    fn step_s(&self) -> f64 {
-        self.it.model().dt_s()
-    }
-
     /// Steps done.
     #[getter]
     fn steps(&self) -> u64 {
@@ -194,12 +188,6 @@ impl Simulation {
         let (crew, model) = (&self.it.mission().crew, self.it.model());
         let speeds = self.it.world().robots.iter().map(|robot| crew.speed_of(model, robot) as f32);
         array(py, "float32", 1, speeds.flat_map(f32::to_ne_bytes).collect())
-    }
-
-    /// Length and width of the arena, in metres.
-    #[getter]
-    fn arena(&self) -> [f64; 2] {
-        self.it.scenario().arena_m
     }
 
     /// For each robot, x and y in metres.

@@ -106,7 +106,7 @@ pub fn recorded<'py>(
 /// >>> import usar
 /// >>> trial = usar.Simulation(usar.Scenario.builtin("paper"), seed=1)
 /// >>> usar.group(trial.until_asked(), "ENG")
-/// [[0, 1, 5, 7, 9, 11], [2, 3, 4, 6, 8, 10]]
+/// [[0, 2, 4, 6, 7, 11], [1, 3, 5, 8, 9, 10]]
 #[pyfunction]
 #[pyo3(signature = (question, policy=None), text_signature = "(question, policy='RNE')")]
 pub fn group(question: &Bound<'_, PyAny>, policy: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Vec<u32>>> {

@@ -12,6 +12,7 @@ from pettingzoo import ParallelEnv
 
 from .._types import Policy
 from .._usar import Scenario, Simulation, group
+from ._view import agents, first_question
 
 Array = numpy.typing.NDArray[numpy.float32]
 NEAREST = 5
@@ -33,14 +34,9 @@ class Velocities(ParallelEnv[str, Array, Array]):
     render_mode = None
 
     def __init__(self, scenario: Scenario, policy: Policy = "DIS", hz: float = 10.0) -> None:
-        trial = Simulation(scenario, 1)
-        question = trial.until_asked()
-        if question is None:
-            raise ValueError(f"{scenario.name}: its trials ask no question, so that robots have nowhere to go")
-        self._steps = max(1, round(1.0 / (hz * trial.step_s)))
+        self._steps = max(1, round(1.0 / (hz * scenario.step_s)))
         self._scenario, self._policy = scenario, policy
-        role_of = {member["id"]: question["roles"][member["role"]] for member in question["members"]}
-        self.possible_agents = [f"{role_of[robot]}_{robot}" for robot in range(scenario.robots)]
+        self.possible_agents = agents(scenario, first_question(scenario))
         self.agents: list[str] = []
         near = [f"near_{at}_{axis}" for at in range(NEAREST) for axis in "xy"]
         self.feature_names = ["x", "y", "vx", "vy", "way_x", "way_y", "energy", "hp", *near]
@@ -50,7 +46,7 @@ class Velocities(ParallelEnv[str, Array, Array]):
             agent: spaces.Box(-1.0, 1.0, (2,), numpy.float32) for agent in self.possible_agents
         }
         self._draws = seeding.np_random()[0]
-        self._trial = trial
+        self._trial = Simulation(scenario, 1)
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
         """The space of an agent's observations."""
@@ -80,7 +76,7 @@ class Velocities(ParallelEnv[str, Array, Array]):
         dict[str, dict[str, Any]],
     ]:
         """Drive for a period."""
-        trial, agents = self._trial, self.agents
+        trial, driven = self._trial, self.agents
         wishes = numpy.array([actions[agent] for agent in self.possible_agents], numpy.float32)
         trial.steer(wishes * trial.top_speeds[:, None])
         before, left = trial.totals[0], self._steps
@@ -88,11 +84,11 @@ class Velocities(ParallelEnv[str, Array, Array]):
             left -= trial.step(left)
             self._answer()
         status = trial.status
-        told = self._observations(), dict.fromkeys(agents, float(trial.totals[0] - before))
-        ends = dict.fromkeys(agents, status not in (None, "completed")), dict.fromkeys(agents, status == "completed")
+        told = self._observations(), dict.fromkeys(driven, float(trial.totals[0] - before))
+        ends = dict.fromkeys(driven, status not in (None, "completed")), dict.fromkeys(driven, status == "completed")
         if status is not None:
             self.agents = []
-        return *told, *ends, {agent: {} for agent in agents}
+        return *told, *ends, {agent: {} for agent in driven}
 
     def _answer(self) -> None:
         """Answer the question that waits, if there is one."""
@@ -101,7 +97,7 @@ class Velocities(ParallelEnv[str, Array, Array]):
             self._trial.assign(group(question, self._policy))
 
     def _observations(self) -> dict[str, Array]:
-        trial, arena = self._trial, numpy.array(self._trial.arena, numpy.float32)
+        trial, arena = self._trial, numpy.array(self._scenario.arena, numpy.float32)
         places, speeds = trial.positions, numpy.maximum(trial.top_speeds, 1e-6)[:, None]
         apart = (places[None] - places[:, None]) / arena
         order = numpy.argsort((apart**2).sum(axis=2), axis=1, kind="stable")[:, 1 : NEAREST + 1]

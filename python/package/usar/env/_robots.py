@@ -28,7 +28,7 @@ class Robots(ParallelEnv[str, Observation, int]):
     def __init__(self, scenario: Scenario, reward: Reward = (1.0, 0.0, 0.0)) -> None:
         self._view, self._reward = View(scenario), reward
         view = self._view
-        self.possible_agents = [f"{view.roles[view.role_of[robot]]}_{robot}" for robot in range(view.robots)]
+        self.possible_agents = view.agents
         self.agents: list[str] = []
         self.feature_names = view.own_names + view.shared_names
         box = spaces.Box(0.0, 1.0, (len(self.feature_names),), numpy.float32)

@@ -13,20 +13,36 @@ from .._usar import Scenario, Simulation
 Features = numpy.typing.NDArray[numpy.float32]
 
 
+def first_question(scenario: Scenario) -> Question:
+    """The first question of a trial."""
+    question = Simulation(scenario, 1).until_asked()
+    if question is None:
+        raise ValueError(f"{scenario.name}: its trials ask no question, so that there is nothing to decide")
+    return question
+
+
+def agents(scenario: Scenario, question: Question) -> list[str]:
+    """A name for each robot, by role and id."""
+    names = {member["id"]: f"{question['roles'][member['role']]}_{member['id']}" for member in question["members"]}
+    if sorted(names) != list(range(scenario.robots)):
+        raise ValueError(
+            f"{scenario.name}: an environment needs a team of one size, all of which is asked at first; found "
+            f"{len(names)} of at most {scenario.robots} robots in the trial of seed 1"
+        )
+    return [names[robot] for robot in range(scenario.robots)]
+
+
 class View:
     """Names and values of the features of one scenario."""
 
     def __init__(self, scenario: Scenario) -> None:
-        trial = Simulation(scenario, 1)
-        question = trial.until_asked()
-        if question is None:
-            raise ValueError(f"{scenario.name}: its trials ask no question, so that there is nothing to decide")
+        question = first_question(scenario)
         self.scenario = scenario
-        self.arena = numpy.array(trial.arena, numpy.float32)
+        self.arena = numpy.array(scenario.arena, numpy.float32)
         self.robots = scenario.robots
         self.tasks = len(question["tasks"])
         self.roles = question["roles"]
-        self.role_of = {member["id"]: member["role"] for member in question["members"]}
+        self.agents = agents(scenario, question)
         self.needs = [need["name"] for need in question["needs"]]
         self.own_names = (
             ["is_asked", "energy", "hp", "home_x", "home_y"]

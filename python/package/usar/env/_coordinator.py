@@ -66,7 +66,7 @@ class Trial:
         return {"moved": moved, "time_s": self.simulation.time_s, "rescued": self.simulation.totals[0]}
 
 
-def _spaces(view: View) -> tuple[spaces.Dict, spaces.MultiDiscrete]:
+def _spaces(view: View) -> tuple[spaces.Space[Any], spaces.MultiDiscrete]:
     size = view.robots * len(view.own_names) + len(view.shared_names)
     observation = spaces.Dict(
         {
@@ -176,7 +176,7 @@ class Vector(VectorEnv[Observation, numpy.typing.NDArray[Any], numpy.typing.NDAr
         advance_all([trial.simulation for trial in self._trials], self._threads)
         rewards = numpy.array([trial.go_on() for trial in self._trials])
         ends = numpy.array([trial.ends for trial in self._trials])
-        self._is_over = ends.any(axis=1)
+        self._is_over = numpy.asarray(ends.any(axis=1))
         return self._observations(), rewards * ~begun, ends[:, 0], ends[:, 1], self._infos(moved)
 
     def _begin(self, at: int, seed: Optional[int]) -> Trial:
