@@ -88,13 +88,13 @@ impl Loss for Spread {
         self.strengths.iter().zip(task_of).for_each(|(strength, task)| self.sums[*task] += strength);
     }
 
-    fn loss(&self) -> f64 {
+    fn loss(&self, _: &[usize]) -> f64 {
         self.spread(|task| self.sums[task])
     }
 
     fn gain(&self, task_of: &[usize], [a, b]: [usize; 2]) -> f64 {
         let moved = self.strengths[b] - self.strengths[a];
-        self.loss()
+        self.loss(task_of)
             - self.spread(|task| match task {
                 task if task == task_of[a] => self.sums[task] + moved,
                 task if task == task_of[b] => self.sums[task] - moved,

@@ -98,3 +98,80 @@ fn tried(question: &Question) -> Vec<Vec<Tried>> {
     }
     tried
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+    use rne_core::{GroupOutcome, MemberOutcome, RandomSeed, RoundOutcome, TaskId};
+
+    use super::*;
+    use crate::made_up::{question, with_needs};
+
+    /// The outcome of a round in which each of the members rescued so many.
+    fn round(number: u32, groups: &[Vec<u32>], rescued: &mut impl FnMut(u32, usize) -> u32) -> RoundOutcome {
+        let mut group = |(task, ids): (usize, &Vec<u32>)| GroupOutcome {
+            task: TaskId(task as u16),
+            rescued: 0,
+            energy: 0.0,
+            hp: 0.0,
+            members: ids
+                .iter()
+                .map(|id| MemberOutcome { id: *id, rescued: rescued(*id, task), ..MemberOutcome::default() })
+                .collect(),
+        };
+        RoundOutcome {
+            round: number,
+            duration_s: 1.0,
+            groups: groups.iter().enumerate().map(&mut group).collect(),
+        }
+    }
+
+    #[test]
+    fn the_example_by_hand() {
+        let mut question = with_needs(&[&[1.0], &[1.0]], &[2, 1]);
+        let bandit = Bandit::new(Options::default()).unwrap();
+        let answer = |question: &Question| bandit.decide(question).unwrap().assignment.groups;
+        let rescued = [[4, 2], [2, 1]];
+        for (number, expected) in [(1, [[0], [1]]), (2, [[1], [0]])] {
+            assert_eq!(answer(&question), expected);
+            let outcome = round(number, &answer(&question), &mut |id, task| rescued[id as usize][task]);
+            question.history.push(outcome);
+        }
+        assert_eq!(answer(&question), [[0], [1]]);
+        assert_eq!(answer(&question), answer(&question.clone()), "the same question has the same answer");
+    }
+
+    /// A world in which each robot rescues Poisson-like numbers around a mean of its own at each task.
+    #[test]
+    fn regret_stays_below_that_of_random_in_a_world_with_known_means() {
+        let means: [[f64; 2]; 6] = [[5.0, 1.0], [2.0, 4.0], [3.0, 3.0], [1.0, 4.0], [6.0, 2.0], [2.0, 3.0]];
+        let best = 5.0 + 4.0 + 3.0 + 4.0 + 6.0 + 3.0; // robots 1 and 2, 3 and 4, 5 and 6 share a role
+        let expected = |groups: &[Vec<u32>]| -> f64 {
+            let of_task = |(task, ids): (usize, &Vec<u32>)| {
+                ids.iter().map(|id| means[*id as usize - 1][task]).sum::<f64>()
+            };
+            groups.iter().enumerate().map(of_task).sum()
+        };
+        let regret = |policy: &dyn Policy| {
+            let mut question = question();
+            let mut draws = question.draws();
+            let mut lost = Vec::new();
+            for number in 1..=200 {
+                question.random_seed = RandomSeed::from(u64::from(number));
+                let groups = policy.decide(&question).unwrap().assignment.groups;
+                lost.push(best - expected(&groups));
+                let mut rescued = |id: u32, task: usize| {
+                    let most = (2.0 * means[id as usize - 1][task]) as u32;
+                    draws.random_range(0..=most)
+                };
+                question.history.push(round(number, &groups, &mut rescued));
+            }
+            [lost.iter().sum::<f64>(), lost[100..].iter().sum::<f64>()]
+        };
+        let [of_bandit, late] = regret(&Bandit::new(Options::default()).unwrap());
+        let [of_random, late_random] = regret(&crate::random::Random);
+        println!("{of_bandit} {late}, RANDOM {of_random} {late_random}");
+        assert!(of_bandit >= 0.0 && of_bandit < of_random / 2.0, "{of_bandit} {of_random}");
+        assert!(late < late_random / 2.0, "{late} {late_random}");
+    }
+}

@@ -1,5 +1,7 @@
 //! Questions for tests.
 
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use rne_core::question::{Need, RandomSeed, SCHEMA_VERSION, hardest_first};
 use rne_core::{GroupSizes, Member, NeedVector, Question, Quota, RoleId, Task};
 
@@ -50,5 +52,22 @@ pub(crate) fn question() -> Question {
     }
     let places = [[20.0, 30.0], [70.0, 50.0]];
     question.tasks.iter_mut().zip(places).for_each(|(task, place)| task.place = Some(place));
+    question.checked().unwrap()
+}
+
+/// A team of at most ten robots of up to three roles with drawn needs, for two or three tasks.
+pub(crate) fn drawn(seed: u64) -> Question {
+    let mut draws = ChaCha8Rng::seed_from_u64(seed);
+    let counts = [draws.random_range(2..6), draws.random_range(0..4), draws.random_range(0..3)];
+    let robots: usize = counts.iter().sum();
+    let needs: Vec<Vec<f64>> =
+        (0..robots).map(|_| (0..4).map(|_| draws.random_range(1.0..100.0)).collect()).collect();
+    let needs: Vec<&[f64]> = needs.iter().map(Vec::as_slice).collect();
+    let mut question = with_needs(&needs, &[1, 2, 3][..draws.random_range(2..4)]);
+    question.roles = (0..3).map(|role| format!("role {role}")).collect();
+    let roles = (0..3).zip(counts).flat_map(|(role, count)| std::iter::repeat_n(RoleId(role), count));
+    question.members.iter_mut().zip(roles).for_each(|(member, role)| member.role = role);
+    question.quotas = Quota::equal(&counts, &question.hardest_first());
+    question.random_seed = RandomSeed::from(seed);
     question.checked().unwrap()
 }

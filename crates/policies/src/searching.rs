@@ -22,7 +22,7 @@ pub(super) trait Loss {
     fn begin(&mut self, task_of: &[usize]);
 
     /// The loss of the assignment.
-    fn loss(&self) -> f64;
+    fn loss(&self, task_of: &[usize]) -> f64;
 
     /// How much the loss falls if two members of different tasks change places.
     fn gain(&self, task_of: &[usize], pair: [usize; 2]) -> f64;
@@ -56,7 +56,7 @@ fn exactly(question: &Question, loss: &mut impl Loss) -> Option<Vec<usize>> {
             }
         }
         loss.begin(&task_of);
-        let found = loss.loss();
+        let found = loss.loss(&task_of);
         let ranks: Vec<usize> = task_of.iter().map(|task| rank[*task]).collect();
         let is_better = best
             .as_ref()
@@ -68,7 +68,8 @@ fn exactly(question: &Question, loss: &mut impl Loss) -> Option<Vec<usize>> {
     best.map(|(.., task_of)| task_of)
 }
 
-fn by_swaps(question: &Question, loss: &mut impl Loss, mut task_of: Vec<usize>) -> Vec<usize> {
+/// Swaps of two members of a role improve an assignment as long as any does.
+pub(super) fn by_swaps(question: &Question, loss: &mut impl Loss, mut task_of: Vec<usize>) -> Vec<usize> {
     loss.begin(&task_of);
     let roles: Vec<Vec<usize>> = question.role_ids().map(|role| of_role(question, role)).collect();
     let (mut weighed, mut improved) = (0, true);

@@ -97,7 +97,21 @@ fn affinities(points: &[Vec<f64>]) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::made_up::with_needs;
+    use crate::clustering::tests::found_and_least;
+    use crate::made_up::{drawn, with_needs};
+
+    #[test]
+    fn of_1_000_teams_at_least_950_are_clustered_as_brute_force_does() {
+        let is_best = |seed: &u64| {
+            let question = drawn(*seed);
+            let points = coordinates(&standardised(&question), question.tasks.len()).unwrap();
+            let [found, least] = found_and_least(&question, &points);
+            found < least + 1e-9
+        };
+        let best = (0..1_000).filter(is_best).count();
+        println!("{best} of 1,000");
+        assert!(best >= 950, "{best}");
+    }
 
     #[test]
     fn the_example_by_hand() {
