@@ -8,12 +8,13 @@
 //! Example: two members with values (3, 2) and (3, 0) at two tasks of one place each. The first one at its
 //! favourite task leaves 0 for the second one, 3 in all; crossed they have 2 + 3 = 5.
 
-use pathfinding::kuhn_munkres::{Weights, kuhn_munkres};
+use pathfinding::kuhn_munkres::kuhn_munkres;
+use pathfinding::matrix::Matrix;
 use rne_core::ids::RoleId;
 use rne_core::question::Question;
 
 /// Values are rounded to whole numbers of this part of 1.
-const STEPS: f64 = (1_u64 << 40) as f64;
+const STEPS: f64 = 1_099_511_627_776.0; // 2^40
 
 /// The task of each member, by its place in the table of tasks. `values` has a row for each member and, in
 /// it, a number for each task; between -200 and 200.
@@ -23,9 +24,8 @@ pub(super) fn best(question: &Question, values: &[Vec<f64>]) -> Vec<usize> {
     let mut task_of = vec![0; question.members.len()];
     for role in question.role_ids() {
         let members = of_role(question, role);
-        let rows = members.iter().map(|member| whole(&values[*member])).collect();
-        let places = places(question, role);
-        for (member, task) in members.iter().zip(best_of_role(rows, places)) {
+        let rows: Vec<Vec<i64>> = members.iter().map(|member| whole(&values[*member])).collect();
+        for (member, task) in members.iter().zip(best_of_role(&rows, &places(question, role))) {
             task_of[*member] = task;
         }
     }
@@ -34,7 +34,8 @@ pub(super) fn best(question: &Question, values: &[Vec<f64>]) -> Vec<usize> {
 
 /// The columns of a square table of values, one for each row, with the largest sum.
 pub(super) fn matching(values: &[Vec<f64>]) -> Vec<usize> {
-    best_of_role(values.iter().map(|row| whole(row)).collect(), (0..values.len()).collect())
+    let rows: Vec<Vec<i64>> = values.iter().map(|row| whole(row)).collect();
+    best_of_role(&rows, &(0..values.len()).collect::<Vec<usize>>())
 }
 
 fn whole(values: &[f64]) -> Vec<i64> {
@@ -60,49 +61,28 @@ pub(super) fn groups(question: &Question, task_of: &[usize]) -> Vec<Vec<u32>> {
     groups
 }
 
-/// Rows of members and the tasks of as many places.
-struct Values {
-    rows: Vec<Vec<i64>>,
-    places: Vec<usize>,
-}
-
-impl Weights<i64> for Values {
-    fn rows(&self) -> usize {
-        self.rows.len()
-    }
-
-    fn columns(&self) -> usize {
-        self.places.len()
-    }
-
-    fn at(&self, row: usize, column: usize) -> i64 {
-        self.rows[row][self.places[column]]
-    }
-
-    fn neg(&self) -> Self {
-        let negated = |row: &Vec<i64>| row.iter().map(|value| -value).collect();
-        Self { rows: self.rows.iter().map(negated).collect(), places: self.places.clone() }
-    }
-}
-
-fn best_of_role(rows: Vec<Vec<i64>>, places: Vec<usize>) -> Vec<usize> {
-    let values = Values { rows, places };
-    let (_, mut place_of) = kuhn_munkres(&values);
-    while settle_ties(&values, &mut place_of) {}
-    place_of.iter().map(|place| values.places[*place]).collect()
+/// `rows` are members, and `places` the tasks of as many places.
+fn best_of_role(rows: &[Vec<i64>], places: &[usize]) -> Vec<usize> {
+    let values = Matrix::from_fn(rows.len(), places.len(), |(row, place)| rows[row][places[place]]);
+    let (_, place_of) = kuhn_munkres(&values);
+    let mut task_of: Vec<usize> = place_of.iter().map(|place| places[*place]).collect();
+    let mut rank = places.to_vec();
+    rank.dedup();
+    while settle_ties(rows, &rank, &mut task_of) {}
+    task_of
 }
 
 /// Lets members change places where that costs nothing and the lower one gets the harder task. Returns
-/// whether any did.
-fn settle_ties(values: &Values, place_of: &mut [usize]) -> bool {
+/// whether any did. `hardest_first` has the tasks.
+fn settle_ties(rows: &[Vec<i64>], hardest_first: &[usize], task_of: &mut [usize]) -> bool {
     let mut changed = false;
-    for low in 0..place_of.len() {
-        for high in low + 1..place_of.len() {
-            let [mine, other] = [place_of[low], place_of[high]];
-            let is_harder = other < mine && values.places[other] != values.places[mine];
-            let sum = |a: usize, b: usize| values.at(low, a) + values.at(high, b);
-            if is_harder && sum(mine, other) == sum(other, mine) {
-                place_of.swap(low, high);
+    for low in 0..task_of.len() {
+        for high in low + 1..task_of.len() {
+            let [mine, other] = [task_of[low], task_of[high]];
+            let is_equal = rows[low][mine] + rows[high][other] == rows[low][other] + rows[high][mine];
+            let first = || hardest_first.iter().find(|task| [mine, other].contains(task));
+            if mine != other && is_equal && first() == Some(&other) {
+                task_of.swap(low, high);
                 changed = true;
             }
         }

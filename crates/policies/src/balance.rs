@@ -11,6 +11,7 @@
 
 use rne_core::decision::Decision;
 use rne_core::error::PolicyError;
+use rne_core::ids::TaskId;
 use rne_core::policy::Policy;
 use rne_core::question::Question;
 use rne_core::registry::PolicyKind;
@@ -48,7 +49,7 @@ fn strongest_first(question: &Question, strengths: &[f64]) -> Vec<usize> {
     let mut task_of = vec![0; strengths.len()];
     for member in order {
         let open = &mut open[question.members[member].role.index()];
-        let tasks = question.hardest_first().into_iter().map(|task| task.index());
+        let tasks = question.hardest_first().into_iter().map(TaskId::index);
         let weakest = tasks.filter(|task| open[*task] > 0).min_by(|a, b| sums[*a].total_cmp(&sums[*b]));
         let Some(task) = weakest else { continue };
         open[task] -= 1;

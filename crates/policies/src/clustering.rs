@@ -10,6 +10,7 @@
 use rand::Rng;
 use rand::seq::SliceRandom;
 use rne_core::error::PolicyError;
+use rne_core::ids::TaskId;
 use rne_core::question::Question;
 
 use crate::assigning::{best, matching, of_role, places};
@@ -168,7 +169,7 @@ fn labelled(question: &Question, cluster_of: &[usize], table: &[Vec<f64>]) -> Ve
     let sizes = |task: usize| question.quotas.iter().map(|quota| quota.members[task]).collect::<Vec<usize>>();
     let mut task_of: Vec<usize> = (0..question.tasks.len()).collect();
     for task in 0..question.tasks.len() {
-        let alike = question.hardest_first().into_iter().map(|other| other.index());
+        let alike = question.hardest_first().into_iter().map(TaskId::index);
         let alike: Vec<usize> = alike.filter(|other| sizes(*other) == sizes(task)).collect();
         if alike.iter().min() != Some(&task) {
             continue; // done with the first of them

@@ -8,7 +8,10 @@ use rne_core::question::Question;
 use crate::assigning::of_role;
 
 /// Most assignments that are looked at one by one.
-pub(super) const EXACT_ASSIGNMENTS: u64 = 100_000;
+const EXACT_ASSIGNMENTS: u64 = 100_000;
+
+/// Most members whose assignments are looked at one by one.
+const EXACT_MEMBERS: usize = 1_000;
 
 /// Most swaps that are weighed where there are more assignments.
 const MAX_SWAPS: u64 = 2_000_000;
@@ -32,40 +35,57 @@ pub(super) trait Loss {
 }
 
 /// The task of each member in an assignment with the least loss that has the sizes of the question, and
-/// whether all were looked at. Where they are too many, swaps of two members of a role improve `start`.
+/// whether all were looked at. Where they are too many, swaps of two members of a role improve `start`. Of
+/// equal losses, the one that sends the lower ids to the harder tasks.
 pub(super) fn least(question: &Question, loss: &mut impl Loss, start: Vec<usize>) -> (Vec<usize>, bool) {
     let mut bound = question.clone();
     bound.quotas.iter_mut().for_each(|quota| quota.sizes = GroupSizes::Binding);
-    if assignments::count(&bound) > EXACT_ASSIGNMENTS {
+    if assignments::count(&bound) > EXACT_ASSIGNMENTS || question.members.len() > EXACT_MEMBERS {
         return (by_swaps(question, loss, start), false);
     }
-    (exactly(&bound, loss).unwrap_or(start), true)
+    let open = question.quotas.iter().map(|quota| quota.members.clone()).collect();
+    let tasks = question.hardest_first().iter().map(|task| task.index()).collect();
+    let mut all =
+        All { question, tasks, open, task_of: vec![0; start.len()], best: start, least: f64::INFINITY };
+    all.from(0, loss);
+    (all.best, true)
 }
 
-/// Of equal losses, the assignment that sends the lower ids to the harder tasks.
-fn exactly(question: &Question, loss: &mut impl Loss) -> Option<Vec<usize>> {
-    let mut rank = vec![0; question.tasks.len()];
-    question.hardest_first().iter().enumerate().for_each(|(at, task)| rank[task.index()] = at);
-    let mut best: Option<(f64, Vec<usize>, Vec<usize>)> = None;
-    for assignment in assignments::all(question) {
-        let mut task_of = vec![0; question.members.len()];
-        for (task, group) in assignment.groups.iter().enumerate() {
-            for id in group {
-                let member = question.members.binary_search_by_key(id, |member| member.id);
-                task_of[member.unwrap_or_default()] = task;
+/// A look at all assignments, member by member.
+struct All<'q> {
+    question: &'q Question,
+    /// From the hardest to the easiest.
+    tasks: Vec<usize>,
+    /// For each role and task, the places that are left.
+    open: Vec<Vec<usize>>,
+    task_of: Vec<usize>,
+    best: Vec<usize>,
+    least: f64,
+}
+
+impl All<'_> {
+    /// All choices for this member and those after it.
+    fn from(&mut self, member: usize, loss: &mut impl Loss) {
+        let Some(of) = self.question.members.get(member) else {
+            loss.begin(&self.task_of);
+            let found = loss.loss(&self.task_of);
+            if found < self.least - TIE {
+                self.least = found;
+                self.best.clone_from(&self.task_of);
+            }
+            return;
+        };
+        let role = of.role.index();
+        for at in 0..self.tasks.len() {
+            let task = self.tasks[at];
+            if self.open[role][task] > 0 {
+                self.open[role][task] -= 1;
+                self.task_of[member] = task;
+                self.from(member + 1, loss);
+                self.open[role][task] += 1;
             }
         }
-        loss.begin(&task_of);
-        let found = loss.loss(&task_of);
-        let ranks: Vec<usize> = task_of.iter().map(|task| rank[*task]).collect();
-        let is_better = best
-            .as_ref()
-            .is_none_or(|(least, order, _)| found < least - TIE || (found < least + TIE && ranks < *order));
-        if is_better {
-            best = Some((found, ranks, task_of));
-        }
     }
-    best.map(|(.., task_of)| task_of)
 }
 
 /// Swaps of two members of a role improve an assignment as long as any does.

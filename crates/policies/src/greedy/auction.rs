@@ -75,8 +75,8 @@ mod tests {
     fn the_example_by_hand_gets_half_and_no_free_matrix_less() {
         let example = [vec![1.0, 0.99], vec![1.0, 0.0]];
         let mut draws = ChaCha8Rng::seed_from_u64(7);
-        let mut drawn = |n: usize| (0..n).map(|_| (0..n).map(|_| draws.random::<f64>()).collect()).collect();
-        let matrices: Vec<Vec<Vec<f64>>> = (0..1_000).map(|turn| drawn(2 + turn % 7)).collect();
+        let mut matrix = |n: usize| (0..n).map(|_| (0..n).map(|_| draws.random::<f64>()).collect()).collect();
+        let matrices: Vec<Vec<Vec<f64>>> = (0..1_000).map(|turn| matrix(2 + turn % 7)).collect();
         for bids in matrices.iter().chain([&example.to_vec()]) {
             let market = Market { bids: bids.clone(), open: vec![1; bids.len()] };
             let won = central(&market);

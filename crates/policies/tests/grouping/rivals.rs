@@ -42,7 +42,7 @@ pub fn utility(question: &Question, id: u32, task: usize) -> f64 {
     let rank = ranks.iter().position(|rank| *rank == question.tasks[task].difficulty).unwrap() + 1;
     let way = |home: [f64; 2], task: usize| {
         let place = question.tasks[task].place.unwrap();
-        (home[0] - place[0]).hypot(home[1] - place[1])
+        libm::hypot(home[0] - place[0], home[1] - place[1])
     };
     let tasks = || 0..question.tasks.len();
     let ways = question.members.iter().flat_map(|member| tasks().map(|task| way(member.home, task)));
