@@ -1,11 +1,11 @@
 //! The assignment with the largest sum of values, by the sizes of the question.
 //!
-//! Each role is an assignment problem of its own: its members and its places at the tasks. It is solved
+//! Each role is an assignment problem of its own: its members and its slots at the tasks. It is solved
 //! exactly by the Hungarian method (Kuhn 1955, *The Hungarian Method for the Assignment Problem*; Munkres
 //! 1957) of the crate pathfinding, on whole numbers of 2^-40, so that no rounding decides. It takes time of
 //! the order of the cube of a role's members.
 //!
-//! Example: two members with values (3, 2) and (3, 0) at two tasks of one place each. The first one at its
+//! Example: two members with values (3, 2) and (3, 0) at two tasks of one slot each. The first one at its
 //! favourite task leaves 0 for the second one, 3 in all; crossed they have 2 + 3 = 5.
 
 use pathfinding::kuhn_munkres::kuhn_munkres;
@@ -16,16 +16,16 @@ use rne_core::question::Question;
 /// Values are rounded to whole numbers of this part of 1.
 const STEPS: f64 = 1_099_511_627_776.0; // 2^40
 
-/// The task of each member, by its place in the table of tasks. `values` has a row for each member and, in
+/// The task of each member, by its row in the table of tasks. `values` has a row for each member and, in
 /// it, a number for each task; between -200 and 200.
 ///
-/// If two members of a role could change places at no cost, the lower id has the harder task.
+/// If two members of a role could be swapped at no cost, the lower id has the harder task.
 pub(super) fn best(question: &Question, values: &[Vec<f64>]) -> Vec<usize> {
     let mut task_of = vec![0; question.members.len()];
     for role in question.role_ids() {
         let members = of_role(question, role);
         let rows: Vec<Vec<i64>> = members.iter().map(|member| whole(&values[*member])).collect();
-        for (member, task) in members.iter().zip(best_of_role(&rows, &places(question, role))) {
+        for (member, task) in members.iter().zip(best_of_role(&rows, &slots(question, role))) {
             task_of[*member] = task;
         }
     }
@@ -42,13 +42,13 @@ fn whole(values: &[f64]) -> Vec<i64> {
     values.iter().map(|value| libm::round(value * STEPS) as i64).collect()
 }
 
-/// The members of a role, by their places in the list of members.
+/// The members of a role, by their rows in the list of members.
 pub(super) fn of_role(question: &Question, role: RoleId) -> Vec<usize> {
     (0..question.members.len()).filter(|member| question.members[*member].role == role).collect()
 }
 
-/// The task of each place that a role has, the hardest first.
-pub(super) fn places(question: &Question, role: RoleId) -> Vec<usize> {
+/// The task of each slot that a role has, the hardest first.
+pub(super) fn slots(question: &Question, role: RoleId) -> Vec<usize> {
     let quota = &question.quotas[role.index()].members;
     let tasks = question.hardest_first().into_iter();
     tasks.flat_map(|task| std::iter::repeat_n(task.index(), quota[task.index()])).collect()
@@ -61,18 +61,18 @@ pub(super) fn groups(question: &Question, task_of: &[usize]) -> Vec<Vec<u32>> {
     groups
 }
 
-/// `rows` are members, and `places` the tasks of as many places.
-fn best_of_role(rows: &[Vec<i64>], places: &[usize]) -> Vec<usize> {
-    let values = Matrix::from_fn(rows.len(), places.len(), |(row, place)| rows[row][places[place]]);
-    let (_, place_of) = kuhn_munkres(&values);
-    let mut task_of: Vec<usize> = place_of.iter().map(|place| places[*place]).collect();
-    let mut rank = places.to_vec();
+/// `rows` are members, and `slots` the tasks of as many slots.
+fn best_of_role(rows: &[Vec<i64>], slots: &[usize]) -> Vec<usize> {
+    let values = Matrix::from_fn(rows.len(), slots.len(), |(row, slot)| rows[row][slots[slot]]);
+    let (_, slot_of) = kuhn_munkres(&values);
+    let mut task_of: Vec<usize> = slot_of.iter().map(|slot| slots[*slot]).collect();
+    let mut rank = slots.to_vec();
     rank.dedup();
     while settle_ties(rows, &rank, &mut task_of) {}
     task_of
 }
 
-/// Lets members change places where that costs nothing and the lower one gets the harder task. Returns
+/// Swaps members where that costs nothing and the lower one gets the harder task. Returns
 /// whether any did. `hardest_first` has the tasks.
 fn settle_ties(rows: &[Vec<i64>], hardest_first: &[usize], task_of: &mut [usize]) -> bool {
     let mut changed = false;

@@ -7,7 +7,7 @@
 //! tasks that get nobody do not count. Exact up to 100,000 assignments, which takes time in proportion to
 //! them; above that time n^2 for each pass of swaps.
 //!
-//! Example: robots with strengths 4, 3, 2, 1 and two tasks of two places: 4 + 1 and 3 + 2, a difference of 0.
+//! Example: robots with strengths 4, 3, 2, 1 and two tasks of two slots: 4 + 1 and 3 + 2, a difference of 0.
 
 use rne_core::decision::Decision;
 use rne_core::error::PolicyError;
@@ -40,7 +40,7 @@ impl Policy for Balance {
     }
 }
 
-/// The strongest member first, each to the weakest group that has a place for its role.
+/// The strongest member first, each to the weakest group that has a slot for its role.
 fn strongest_first(question: &Question, strengths: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..strengths.len()).collect();
     order.sort_by(|a, b| strengths[*b].total_cmp(&strengths[*a]).then(a.cmp(b)));

@@ -7,8 +7,8 @@
 //! The assignment with the largest sum is that of OPTIMAL on these numbers. Time: the cube of a role's
 //! members.
 //!
-//! Example: of two robots and two tasks of one place each, the first robot goes to the harder task in round 1,
-//! and they change places in round 2. With 4 and 1 rescued in round 1, and 2 and 2 in round 2, the means over
+//! Example: of two robots and two tasks of one slot each, the first robot goes to the harder task in round 1,
+//! and they are swapped in round 2. With 4 and 1 rescued in round 1, and 2 and 2 in round 2, the means over
 //! 4 are (1, 0.5) for the first and (0.5, 0.25) for the second; the bounds are equally wide. All sums are
 //! 1.25 and 1: in round 3 the first one goes to the harder task.
 

@@ -1,7 +1,7 @@
 //! Clusters of robots that are alike, with the sizes of the question: k-means whose assignments keep sizes.
 //!
-//! Lloyd's algorithm (1982, *Least Squares Quantization in PCM*) with an optimal assignment in the place of
-//! the nearest centre (Malinen, Franti 2014, *Balanced K-Means for Clustering*). Each of 20 starts is a fair
+//! Lloyd's algorithm (1982, *Least Squares Quantization in PCM*) with an optimal assignment instead of the
+//! nearest centre (Malinen, Franti 2014, *Balanced K-Means for Clustering*). Each of 20 starts is a fair
 //! draw; the least inertia wins, and swaps of two members of a role lower it as long as any does (Hartigan,
 //! Wong 1979, *A K-Means Clustering Algorithm*: Lloyd's centres do not move before all are assigned, so that
 //! he misses swaps that pay). A cluster has the sizes of a task. Among tasks of the same sizes, clusters are
@@ -13,7 +13,7 @@ use rne_core::error::PolicyError;
 use rne_core::ids::TaskId;
 use rne_core::question::Question;
 
-use crate::assigning::{best, matching, of_role, places};
+use crate::assigning::{best, matching, of_role, slots};
 use crate::searching::{Loss, by_swaps};
 use crate::utility::Utility;
 
@@ -73,7 +73,7 @@ fn drawn(question: &Question, draws: &mut impl Rng) -> Vec<usize> {
     for role in question.role_ids() {
         let mut members = of_role(question, role);
         members.shuffle(draws);
-        members.into_iter().zip(places(question, role)).for_each(|(member, task)| cluster_of[member] = task);
+        members.into_iter().zip(slots(question, role)).for_each(|(member, task)| cluster_of[member] = task);
     }
     cluster_of
 }
@@ -131,7 +131,7 @@ struct Inertia<'p> {
 }
 
 impl Inertia<'_> {
-    /// How much the inertia of the cluster of `leaves` falls if `comes` takes its place.
+    /// How much the inertia of the cluster of `leaves` falls if `comes` comes instead.
     fn gain_of(&self, cluster: usize, [leaves, comes]: [usize; 2]) -> f64 {
         let [leaves, comes] = [leaves, comes].map(|member| &self.points[member]);
         let centre = &self.centres[cluster];

@@ -5,7 +5,7 @@
 //! *Balanced K-Means for Clustering*), from 20 fair draws of the question. Clusters of the same sizes are
 //! given to tasks by the largest sum of the [utility](crate::utility). Time for each round: that of OPTIMAL.
 //!
-//! Example: robots with the one need 1, 2, 8, 9 and two tasks of two places: {1, 2} and {8, 9}; with
+//! Example: robots with the one need 1, 2, 8, 9 and two tasks of two slots: {1, 2} and {8, 9}; with
 //! `distance: 0` the latter go to the harder task.
 
 use rne_core::decision::Decision;

@@ -4,7 +4,7 @@
 //! for the Assignment Problem*, Naval Research Logistics Quarterly 2; Munkres 1957). The sum of the account
 //! is added up again from the utilities as they are. Time: the cube of a role's members.
 //!
-//! Example: two robots have utilities (1, 0.99) and (1, 0) at two tasks of one place each. OPTIMAL sends the
+//! Example: two robots have utilities (1, 0.99) and (1, 0) at two tasks of one slot each. OPTIMAL sends the
 //! first one to the second task, 1.99 in all; GREEDY takes the first 1 and gets 1.00.
 
 use rne_core::decision::{Account, Decision};

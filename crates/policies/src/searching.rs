@@ -19,7 +19,7 @@ const MAX_SWAPS: u64 = 2_000_000;
 /// Losses that differ by less are equal.
 const TIE: f64 = 1e-12;
 
-/// What an assignment loses. Members and tasks go by their places in the question.
+/// What an assignment loses. Members and tasks go by their rows in the question.
 pub(super) trait Loss {
     /// Begins at an assignment: the task of each member.
     fn begin(&mut self, task_of: &[usize]);
@@ -27,10 +27,10 @@ pub(super) trait Loss {
     /// The loss of the assignment.
     fn loss(&self, task_of: &[usize]) -> f64;
 
-    /// How much the loss falls if two members of different tasks change places.
+    /// How much the loss falls if two members of different tasks are swapped.
     fn gain(&self, task_of: &[usize], pair: [usize; 2]) -> f64;
 
-    /// Two members change places; `task_of` is before.
+    /// Two members are swapped; `task_of` is before.
     fn swap(&mut self, task_of: &[usize], pair: [usize; 2]);
 }
 
@@ -56,7 +56,7 @@ struct All<'q> {
     question: &'q Question,
     /// From the hardest to the easiest.
     tasks: Vec<usize>,
-    /// For each role and task, the places that are left.
+    /// For each role and task, the slots that are left.
     open: Vec<Vec<usize>>,
     task_of: Vec<usize>,
     best: Vec<usize>,

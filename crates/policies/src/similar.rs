@@ -6,7 +6,7 @@
 //! Exact up to 100,000 assignments, in time in proportion to them; above that, swaps from the order of the
 //! ids, in time n^2 for each pass.
 //!
-//! Example: four robots of a role with needs (1, 3), (3, 1), (1, 3), (3, 1), and two tasks of two places: the
+//! Example: four robots of a role with needs (1, 3), (3, 1), (1, 3), (3, 1), and two tasks of two slots: the
 //! first and the third one work together, and so do the others, with a sum of 0.
 
 use rne_core::decision::Decision;
@@ -17,7 +17,7 @@ use rne_core::policy::Policy;
 use rne_core::question::{Member, Question};
 use rne_core::registry::PolicyKind;
 
-use crate::assigning::{groups, of_role, places};
+use crate::assigning::{groups, of_role, slots};
 use crate::searching::{Loss, least};
 
 /// What a pair without any trust counts, in nats.
@@ -39,7 +39,7 @@ impl Policy for Similar {
         let mut start = vec![0; question.members.len()];
         for role in question.role_ids() {
             let members = of_role(question, role).into_iter();
-            members.zip(places(question, role)).for_each(|(member, task)| start[member] = task);
+            members.zip(slots(question, role)).for_each(|(member, task)| start[member] = task);
         }
         let mut within = Within::new(question)?;
         let (task_of, proven_optimal) = least(question, &mut within, start);

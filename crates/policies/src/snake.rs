@@ -4,7 +4,7 @@
 //! fair division of items (Brams, Taylor 1999, *The Win-Win Solution*). Strength is that of the
 //! [utility](crate::utility). Time: n log n.
 //!
-//! Example: robots with strengths 4, 3, 2, 1 and two tasks of two places. The harder task gets 4, the other
+//! Example: robots with strengths 4, 3, 2, 1 and two tasks of two slots. The harder task gets 4, the other
 //! one 3 and 2, the harder one 1: a sum of 5 each.
 
 use rne_core::decision::{Account, Decision};
@@ -48,7 +48,7 @@ impl Policy for Snake {
     }
 }
 
-/// The tasks in the order of their turns, each as often as it has places.
+/// The tasks in the order of their turns, each as often as it has slots.
 fn turns(quota: &[usize], hardest_first: &[TaskId]) -> Vec<TaskId> {
     let most = quota.iter().copied().max().unwrap_or(0);
     let mut turns = Vec::new();

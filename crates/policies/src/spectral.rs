@@ -5,7 +5,7 @@
 //! over all pairs, `w`. The rows of the eigenvectors of `D^-1/2 A D^-1/2` with the k largest eigenvalues are
 //! scaled to length 1 and clustered as by KMEANS, with k groups that get robots. Time: n^3 for n robots.
 //!
-//! Example: robots with the one need 1, 2, 8, 9 and two tasks of two places: {1, 2} and {8, 9}, as KMEANS.
+//! Example: robots with the one need 1, 2, 8, 9 and two tasks of two slots: {1, 2} and {8, 9}, as KMEANS.
 //! It differs from KMEANS where clusters are no balls, such as a ring around a ball.
 
 use nalgebra::linalg::SymmetricEigen;

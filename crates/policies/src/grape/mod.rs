@@ -5,7 +5,7 @@
 //! `u = quality v_j s_ij f(p) / p - distance c_ij`, with the parts of the [utility](crate::utility). From
 //! nobody placed, the lowest id that gains more than 1e-12 moves to its best task, until no robot gains: a
 //! Nash stable partition. Robots of each role play among themselves, and do not know the sizes that the
-//! question suggests. Where sizes are not free, only tasks with an open place can be moved to, and what
+//! question suggests. Where sizes are not free, only tasks with an open slot can be moved to, and what
 //! remains is a choice in the order of the ids.
 //!
 //! A move is one round in which the robot tells all others of its role the partition. Time: n^2 m for n
@@ -109,7 +109,7 @@ impl Policy for Grape {
                     |member: &usize| hardest_first.iter().map(|task| table[*member][task.index()]).collect();
                 members.iter().map(row).collect()
             };
-            let room = |places: usize| if quota.sizes == GroupSizes::Free { members.len() } else { places };
+            let room = |slots: usize| if quota.sizes == GroupSizes::Free { members.len() } else { slots };
             let game = Game {
                 rewards: ordered(&gains),
                 ways: ordered(&ways),

@@ -1,4 +1,4 @@
-//! The robots of a role, and the places at tasks that they bid for.
+//! The robots of a role, and the slots at tasks that they bid for.
 
 use std::cmp::Ordering;
 
@@ -6,7 +6,7 @@ use rne_core::ids::TaskId;
 
 /// Robots and tasks by number: robots by id, tasks from the hardest to the easiest.
 pub(super) struct Market {
-    /// For each robot, its bid for a place at each task.
+    /// For each robot, its bid for a slot at each task.
     pub(super) bids: Vec<Vec<f64>>,
     /// Places at each task.
     pub(super) open: Vec<usize>,

@@ -1,5 +1,5 @@
 //! `GREEDY(protocol, graph, quality, distance)`: the largest [utility](crate::utility) among free robots and
-//! open places, again and again.
+//! open slots, again and again.
 //!
 //! The protocol says who does it. `Central` sorts all pairs. `Ssi` is a sequential single-item auction
 //! (Koenig et al. 2006, *The Power of Sequential Single-Item Auctions for Agent Coordination*). `Cbba` is the
@@ -10,7 +10,7 @@
 //! Time for n members of a role and m tasks: `Central` n m log(n m), `Ssi` n^2 m, `Cbba` up to n^2 for each
 //! round and link.
 //!
-//! Example: utilities (1, 0.99) and (1, 0) at two tasks of one place each. Both robots have 1 at the first
+//! Example: utilities (1, 0.99) and (1, 0) at two tasks of one slot each. Both robots have 1 at the first
 //! task; the lower id gets it. The other one is left with 0: 1.00 in all, of 1.99 that are possible.
 
 mod auction;
