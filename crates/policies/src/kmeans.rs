@@ -1,9 +1,10 @@
 //! `KMEANS(quality, distance)`: robots that are alike work together, by k-means on their needs.
 //!
 //! Needs are standardised over the team, and clusters keep the sizes of the question: Lloyd's algorithm
-//! (1982, *Least Squares Quantization in PCM*) with an optimal assignment in each round (Malinen, Franti 2014,
-//! *Balanced K-Means for Clustering*), from 20 fair draws of the question. Clusters of the same sizes are
-//! given to tasks by the largest sum of the [utility](crate::utility). Time for each round: that of OPTIMAL.
+//! (1982, *Least Squares Quantization in PCM*) with an optimal assignment in each round (Malinen, Franti
+//! 2014, *Balanced K-Means for Clustering*), from 20 fair draws of the question. Clusters of the same sizes
+//! are given to tasks by the largest sum of the [utility](crate::utility). Time for each round: that of
+//! OPTIMAL.
 //!
 //! Example: robots with the one need 1, 2, 8, 9 and two tasks of two slots: {1, 2} and {8, 9}; with
 //! `distance: 0` the latter go to the harder task.

@@ -74,8 +74,8 @@ mod tests {
         let error = standard().make("NEAREST", "").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM, OPTIMAL, GREEDY, GRAPE, \
-             SNAKE, BALANCE, SIMILAR, KMEANS, SPECTRAL, BANDIT"
+            "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM, OPTIMAL, GREEDY, \
+             GRAPE, SNAKE, BALANCE, SIMILAR, KMEANS, SPECTRAL, BANDIT"
         );
     }
 

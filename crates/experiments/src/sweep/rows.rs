@@ -165,8 +165,8 @@ pub(super) fn rounds<'a>() -> Columns<RoundRow<'a>> {
     let secured = "Rescuees that the group took on board in the round.";
     let rescued = "Rescuees of the task that were delivered in the round.";
     let turned_back = "Members that left for a rest place in the round.";
-    let exchanges = "Rounds of messages until the robots had agreed on all groups of the round; empty where they \
-        would not talk.";
+    let exchanges = "Rounds of messages until the robots had agreed on all groups of the round; empty where \
+        they would not talk.";
     let messages = "Messages of this agreement, for all groups together.";
     let bytes = "Bytes of these messages, without headers.";
     with_trial(columns! { RoundRow:
