@@ -301,7 +301,7 @@ fn an_unknown_policy_in_a_sweep_file_lists_the_known_ones() {
         .err()
         .unwrap()
         .to_string();
-    let expected = "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM";
+    let expected = "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM, OPTIMAL, ";
     assert!(error.contains(expected), "{error}");
 }
 

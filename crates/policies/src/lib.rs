@@ -11,14 +11,27 @@
 //! one line in [`estimators`]. A program adds its own with [`Registry::add`], [`Registry::add_measure`] and
 //! [`Registry::add_estimator`].
 
+mod assigning;
+pub mod balance;
+pub mod bandit;
+mod clustering;
 pub mod distance;
 pub mod energy;
 pub mod estimators;
 mod facts;
+pub mod grape;
+pub mod greedy;
 pub mod hp_distance;
+pub mod kmeans;
+pub mod optimal;
 pub mod random;
 mod ranking;
 pub mod rne;
+mod searching;
+pub mod similar;
+pub mod snake;
+pub mod spectral;
+pub mod utility;
 
 use rne_core::Registry;
 
@@ -28,7 +41,10 @@ pub use rne::RneOptions;
 #[must_use]
 pub fn standard() -> Registry {
     let mut registry = Registry::default();
-    for kind in [rne::kind(), distance::kind(), energy::kind(), hp_distance::kind(), random::kind()] {
+    let first = [rne::kind(), distance::kind(), energy::kind(), hp_distance::kind(), random::kind()];
+    let of_utility = [optimal::kind(), greedy::kind(), grape::kind()];
+    let of_strength = [snake::kind(), balance::kind(), similar::kind(), kmeans::kind(), spectral::kind()];
+    for kind in first.into_iter().chain(of_utility).chain(of_strength).chain([bandit::kind()]) {
         let _ = registry.add(kind); // their names differ
     }
     let _ = registry.add_measure(rne::measure_kind());
@@ -44,6 +60,9 @@ pub fn standard() -> Registry {
 struct Readme;
 
 #[cfg(test)]
+mod made_up;
+
+#[cfg(test)]
 mod tests {
     use rne_core::RegistryError;
     use rne_core::registry_error::Entry;
@@ -55,7 +74,8 @@ mod tests {
         let error = standard().make("NEAREST", "").unwrap_err();
         assert_eq!(
             error.to_string(),
-            "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM"
+            "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM, OPTIMAL, GREEDY, \
+             GRAPE, SNAKE, BALANCE, SIMILAR, KMEANS, SPECTRAL, BANDIT"
         );
     }
 

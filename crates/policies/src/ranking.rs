@@ -15,17 +15,28 @@ pub(super) fn deal_by_rank<K>(
     key: impl Fn(&Member) -> Result<K, PolicyError>,
     better_first: impl Fn(&K, &K) -> Ordering,
 ) -> Result<Decision, PolicyError> {
-    let mut roles = Vec::with_capacity(question.roles.len());
-    let mut orders = Vec::with_capacity(question.roles.len());
-    for role in question.role_ids() {
+    let ranking = rank(question, key_name, value, key, better_first)?;
+    let ids = |ranked: &Vec<Ranked>| ranked.iter().map(|robot| robot.id).collect();
+    let orders: Vec<Vec<u32>> = ranking.roles.iter().map(ids).collect();
+    Ok(Decision { account: Account::Ranking(ranking), ..deal(question, &orders) })
+}
+
+/// Sorts the members of each role, see [`deal_by_rank`].
+pub(super) fn rank<K>(
+    question: &Question,
+    key_name: &str,
+    value: impl Fn(&K) -> f64,
+    key: impl Fn(&Member) -> Result<K, PolicyError>,
+    better_first: impl Fn(&K, &K) -> Ordering,
+) -> Result<Ranking, PolicyError> {
+    let of_role = |role| {
         let keyed = question.of_role(role).map(|member| Ok((key(member)?, member.id)));
         let mut ranked = keyed.collect::<Result<Vec<_>, PolicyError>>()?;
         ranked.sort_by(|a, b| better_first(&a.0, &b.0).then(a.1.cmp(&b.1)));
-        roles.push(ranked.iter().map(|(key, id)| Ranked { id: *id, value: value(key) }).collect());
-        orders.push(ranked.into_iter().map(|(_, id)| id).collect());
-    }
-    let account = Account::Ranking(Ranking { key: key_name.to_owned(), roles });
-    Ok(Decision { account, ..deal(question, &orders) })
+        Ok(ranked.iter().map(|(key, id)| Ranked { id: *id, value: value(key) }).collect())
+    };
+    let roles = question.role_ids().map(of_role).collect::<Result<_, PolicyError>>()?;
+    Ok(Ranking { key: key_name.to_owned(), roles })
 }
 
 /// Deals the members of each role out over the tasks by their quotas. The members keep the given order; the

@@ -173,8 +173,33 @@ pub enum Account {
     Ranking(Ranking),
     /// It searched for the largest Relative Needs Entropy, level by level.
     Rne(RneAccount),
+    /// The robots would have come to it among themselves.
+    Protocol(Protocol),
     /// In words.
     Text(String),
+}
+
+/// What robots send one another until they agree, on links that lose and delay nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct Protocol {
+    /// Rounds of messages, in each of which every link may carry one message in each direction.
+    pub rounds: u64,
+    /// Messages over one link each.
+    pub messages: u64,
+    /// Bytes of these messages, without headers.
+    pub bytes: u64,
+}
+
+impl Protocol {
+    /// Both exchanges, side by side: the longer one says when they are over.
+    #[must_use]
+    pub fn beside(self, other: Self) -> Self {
+        Self {
+            rounds: self.rounds.max(other.rounds),
+            messages: self.messages + other.messages,
+            bytes: self.bytes + other.bytes,
+        }
+    }
 }
 
 /// Members sorted by one key; the first go to the hardest task.

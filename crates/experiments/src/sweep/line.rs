@@ -104,7 +104,9 @@ pub(super) fn line_of(experiment: &Experiment, keep: Keep, outcome: &Outcome) ->
             let links = links::encode(if has_chains { trial.record.chain.links() } else { &[] });
             let mut trial = Box::new(trial.clone());
             if !has_chains {
-                trial.record.decisions.iter_mut().for_each(|asked| asked.decision.account = Account::None);
+                let accounts = trial.record.decisions.iter_mut().map(|asked| &mut asked.decision.account);
+                let long = accounts.filter(|account| !matches!(account, Account::Protocol(_)));
+                long.for_each(|account| *account = Account::None);
             }
             Stored::Ended { links, trial }
         }

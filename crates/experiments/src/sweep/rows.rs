@@ -1,7 +1,8 @@
 //! The columns of the tables that a sweep writes, and what a row of each is.
 
-use rne_core::TaskId;
+use rne_core::decision::Protocol;
 use rne_core::question::{Member, Question};
+use rne_core::{Account, TaskId};
 use tables::Kind::{Natural, Number, Text};
 use tables::{About, Cell, Column, Columns, columns};
 use usar_sim::event::ReturnCause;
@@ -164,6 +165,10 @@ pub(super) fn rounds<'a>() -> Columns<RoundRow<'a>> {
     let secured = "Rescuees that the group took on board in the round.";
     let rescued = "Rescuees of the task that were delivered in the round.";
     let turned_back = "Members that left for a rest place in the round.";
+    let exchanges = "Rounds of messages until the robots had agreed on all groups of the round; empty where \
+        they would not talk.";
+    let messages = "Messages of this agreement, for all groups together.";
+    let bytes = "Bytes of these messages, without headers.";
     with_trial(columns! { RoundRow:
         "round", Natural, "", ROUND, |row| row.it.1.round;
         "task", Text, "", TASK, |row| {
@@ -181,7 +186,20 @@ pub(super) fn rounds<'a>() -> Columns<RoundRow<'a>> {
         "turned_back", Natural, "robots", turned_back, |row| row.it.1.turned_back;
         "return_cause", Text, "", "Why the group went home; empty where it did not.",
             |row| row.it.1.return_cause.map(ReturnCause::name);
+        "exchanges", Natural, "", exchanges, |row| protocol(row).map(|sent| sent.rounds);
+        "messages", Natural, "", messages, |row| protocol(row).map(|sent| sent.messages);
+        "bytes", Natural, "B", bytes, |row| protocol(row).map(|sent| sent.bytes);
     })
+}
+
+/// What the robots would have sent to group the team for the round, under a policy that says so.
+fn protocol(row: &RoundRow) -> Option<Protocol> {
+    let (record, round) = row.it;
+    let decided = record.decisions.iter().find(|decided| decided.question.round == round.round)?;
+    match decided.decision.account {
+        Account::Protocol(protocol) => Some(protocol),
+        _ => None,
+    }
 }
 
 /// The rows of `rounds.csv` of a trial.

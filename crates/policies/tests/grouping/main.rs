@@ -8,5 +8,7 @@ mod oracle;
 mod pairs;
 mod properties;
 mod quotas;
+mod rival_figures;
+mod rivals;
 mod support;
 mod two_tasks;

@@ -232,7 +232,7 @@ fn bad_options_of_a_table_are_refused() {
     };
     refuse(
         &["--policy", "NEAREST"],
-        "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM",
+        "unknown policy \"NEAREST\"; known policies: RNE, DIS, ENG, HP_DIS, RANDOM, OPTIMAL, ",
     );
     refuse(&["--policy", "RNE(score: Most)"], "--policy: policy RNE: ");
     refuse(&["--policy", "RNE", "--out", "x.svg"], "cannot be used with");

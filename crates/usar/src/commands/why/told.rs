@@ -33,6 +33,11 @@ pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &Trial) -> Res
     match &decision.account {
         PolicyAccount::Rne(of_rne) => rne(out, question, of_rne)?,
         PolicyAccount::Ranking(ranking) => ranked(out, question, ranking)?,
+        PolicyAccount::Protocol(sent) => writeln!(
+            out,
+            "The robots would have agreed after {} exchanges, with {} messages of {} bytes in all.",
+            sent.rounds, sent.messages, sent.bytes
+        )?,
         PolicyAccount::Text(text) => writeln!(out, "{} says: {text}", account.policy)?,
         _ => writeln!(out, "{} gives no account of its decision.", account.policy)?,
     }
