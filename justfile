@@ -55,11 +55,6 @@ damage *arguments:
     cargo build --release --package usar
     cargo run --release --package xtask -- damage {{arguments}}
 
-# A million trials by a fast fake, in 50 shards: time, memory and disk of merge, compare and report
-million *arguments:
-    cargo build --release --package usar
-    cargo run --release --package xtask -- million {{arguments}}
-
 # A sweep on Slurm itself, with a task killed and one cancelled: installs Debian's slurm-wlm, needs root
 slurm:
     bash .ci/slurm
@@ -156,8 +151,3 @@ results:
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:
     cargo run --release --package xtask -- coverage {{arguments}}
-
-# The search for scenarios/paper-calibrated.ron, from the design of its readings to the choice (docs/calibration.md): hours; goes on where it was broken off
-calibrate:
-    cargo build --release --package usar
-    cargo run --release --package xtask -- calibration

@@ -8,8 +8,6 @@
 )]
 
 pub mod bend;
-pub mod calibrated;
-pub mod calibration;
 pub mod damage;
 pub mod density;
 pub mod evidence;

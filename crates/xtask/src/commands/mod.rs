@@ -1,13 +1,11 @@
 //! One file per task.
 
-pub mod calibration;
 pub mod coverage;
 pub mod damage;
 pub mod golden;
 pub mod grid;
 pub mod kills;
 pub mod limits;
-pub mod million;
 pub mod mutations;
 pub mod pages;
 pub mod quiet;
