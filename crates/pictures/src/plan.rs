@@ -28,7 +28,6 @@ pub struct Plan<'w> {
 
 /// Draws a world before the trial: walls, debris, radiation, tasks, rest places, homes, sensing ranges and
 /// errands.
-#[must_use]
 pub fn plan(plan: &Plan, look: &Look) -> Picture {
     let Plan { world, first_sampled: [debris, zones], .. } = *plan;
     let mut sheet = Sheet::new(look, world.arena_m, plan.title);

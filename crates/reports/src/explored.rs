@@ -19,7 +19,6 @@ pub fn sensitivity_figure(rows: &[Row]) -> Result<[Vec<u8>; 2], Failure> {
 }
 
 /// The indices of one outcome.
-#[must_use]
 pub fn sensitivity_table(rows: &[&Row]) -> Table {
     let is_of_effects = rows.iter().any(|row| matches!(row.index, Index::Effects { .. }));
     let mut table = if is_of_effects {
@@ -62,7 +61,6 @@ fn interval(interval: Option<[f64; 2]>) -> String {
 const MOST_IN_WORDS: usize = 3;
 
 /// The ranking of one outcome's parameters in words, the largest first.
-#[must_use]
 pub fn ranking(outcome: &Outcome, rows: &[&Row]) -> String {
     let place = format!("{}, {}", outcome.what, outcome.who);
     if rows.is_empty() {

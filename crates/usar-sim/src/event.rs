@@ -32,7 +32,6 @@ pub enum ReturnCause {
 
 impl ReturnCause {
     /// The cause in words.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::CapacityUsed => "capacity used",
@@ -54,7 +53,6 @@ pub enum CutOffCause {
 
 impl CutOffCause {
     /// The cause in words.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::NoWay => "knows no way",
@@ -349,7 +347,6 @@ impl Event {
 }
 
 /// The JSON Schema of an event.
-#[must_use]
 pub fn event_schema() -> serde_json::Value {
     schemars::schema_for!(Event).into()
 }
@@ -373,7 +370,6 @@ impl EventLog {
     }
 
     /// The events since the last [`EventLog::clear`].
-    #[must_use]
     pub fn events(&self) -> &[Event] {
         &self.events
     }

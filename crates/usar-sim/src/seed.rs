@@ -60,13 +60,11 @@ impl Purpose {
 }
 
 /// The stream of one purpose and entity in one trial.
-#[must_use]
 pub fn stream(trial_seed: u64, purpose: Purpose, entity: u64) -> ChaCha8Rng {
     stream_at(trial_seed, purpose, entity, 0)
 }
 
 /// The stream of one purpose and entity at one moment of a trial: a step, a round or a number.
-#[must_use]
 pub fn stream_at(trial_seed: u64, purpose: Purpose, entity: u64, moment: u64) -> ChaCha8Rng {
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&trial_seed.to_le_bytes());

@@ -38,7 +38,6 @@ impl Stage {
     ];
 
     /// The stage as one word, for tables.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Sense => "sense",

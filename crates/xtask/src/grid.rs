@@ -88,7 +88,6 @@ impl Grid {
     }
 
     /// Agents with different starts and different goals in the largest part of the map, drawn by a seed.
-    #[must_use]
     pub fn drawn(&self, robots: usize, seed: u64) -> Vec<Agent> {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let (mut starts, mut goals) = (self.largest_part(), self.largest_part());
@@ -150,7 +149,6 @@ impl Grid {
     ///
     /// # Panics
     /// The scenario breaks a rule, which would be a fault of this file.
-    #[must_use]
     pub fn scenario(&self, agents: &[Agent], name: &str, duration_s: f64) -> Scenario {
         let at = |[x, y]: [f64; 2]| [x, self.height() as f64 - y];
         let middle = |cell: Cell| at(cell.map(|x| x as f64 + 0.5));

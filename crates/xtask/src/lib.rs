@@ -3,7 +3,6 @@
 
 #![expect(
     clippy::missing_panics_doc,
-    clippy::must_use_candidate,
     reason = "these are parts of tests: they panic where something is not as it must be"
 )]
 

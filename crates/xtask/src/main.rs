@@ -6,8 +6,8 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    coverage, damage, golden, grid, kills, limits, mutations, pages, quiet, reference, scale, scenarios, soak,
-    work, worlds,
+    coverage, damage, golden, grid, kills, limits, mutations, pages, quiet, reference, scale, scenarios,
+    soak, work, worlds,
 };
 
 fn main() -> ExitCode {

@@ -25,7 +25,6 @@ impl Keep {
     pub const ALL: [Self; 4] = [Self::Trials, Self::Rounds, Self::Robots, Self::Groups];
 
     /// Its name on the command line.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Trials => "trials",
@@ -36,13 +35,11 @@ impl Keep {
     }
 
     /// Whether the records of trials are kept, with rounds and decisions.
-    #[must_use]
     pub fn has_records(self) -> bool {
         self >= Self::Rounds
     }
 
     /// Whether hash chains are kept.
-    #[must_use]
     pub fn has_chains(self) -> bool {
         self >= Self::Groups
     }

@@ -29,7 +29,6 @@ const MOST_COLUMNS: usize = 8;
 
 /// Mean ± sample standard deviation of each metric and policy in one case. A row for each metric, or, if
 /// there are more than eight policies, for each policy.
-#[must_use]
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let trials = folder.trials_of(case);
@@ -68,7 +67,6 @@ fn indented(name: &str, above: &str) -> String {
 }
 
 /// The comparisons of one metric in five columns, for a terminal of 80 columns.
-#[must_use]
 pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
     let mut table = headed(["A - B", "difference", "95 % interval", "p", "verdict"]);
     for c in comparisons {
@@ -89,7 +87,6 @@ pub(crate) fn between(interval: Option<[f64; 2]>) -> String {
 }
 
 /// A row for each comparison, with all that is known of it.
-#[must_use]
 pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
     let is_judged = comparisons.iter().any(|comparison| comparison.judged.is_some());
     let header = [
@@ -137,7 +134,6 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
 
 /// A row for each round and task: what was carried and why the group went home; where there is room, also
 /// when it began, what it cost, and who turned back.
-#[must_use]
 pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table {
     let cells = |round: &RoundRecord| {
         let members: Vec<String> = round.members.iter().map(|member| member.id.to_string()).collect();
@@ -168,7 +164,6 @@ pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table
 }
 
 /// A table in the style of the project, with this header.
-#[must_use]
 pub fn headed(header: impl Into<Row>) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header(header);
@@ -193,13 +188,11 @@ fn columns() -> Option<usize> {
 const WIDE: u16 = 120;
 
 /// Whether a table may have many columns: in a wide terminal, and where programs or pages read it.
-#[must_use]
 pub fn is_wide() -> bool {
     shown_as() != Format::Table || COLUMNS.get().is_some_and(|columns| *columns >= WIDE)
 }
 
 /// A cell aligned on the right.
-#[must_use]
 pub fn right(text: &str) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }

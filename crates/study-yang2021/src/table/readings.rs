@@ -24,7 +24,6 @@ fn names(metrics: &Catalogue) -> impl Iterator<Item = Cell> {
 }
 
 /// Each reading by itself.
-#[must_use]
 pub fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
     let header = ["reading", "regrouped", "split otherwise", "trials"].map(Cell::new);
     let mut table = headed(header.into_iter().chain(names(metrics)));
@@ -38,7 +37,6 @@ pub fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
 }
 
 /// Each reading averaged over the others.
-#[must_use]
 pub fn averaged_table(rows: &[(String, Vec<Option<Difference>>)], metrics: &Catalogue) -> Table {
     let mut table = headed(std::iter::once(Cell::new("reading")).chain(names(metrics)));
     for (reading, row) in rows {
@@ -48,7 +46,6 @@ pub fn averaged_table(rows: &[(String, Vec<Option<Difference>>)], metrics: &Cata
 }
 
 /// All readings against other policies.
-#[must_use]
 pub fn rivals_table(rows: &[RivalRow]) -> Table {
     let mut table = headed([
         "metric",

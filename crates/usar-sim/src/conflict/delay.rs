@@ -49,7 +49,6 @@ impl DelayCause {
     ];
 
     /// The cause as one word, for tables.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::UnderWay => "under_way",
@@ -67,7 +66,6 @@ impl DelayCause {
     }
 
     /// Whether the robot would move if other robots let it.
-    #[must_use]
     pub fn is_waiting(self) -> bool {
         matches!(self, Self::RightOfWay | Self::Blocked)
     }
@@ -90,7 +88,6 @@ pub struct Delay {
 ///
 /// assert_eq!(wait_cycles(&[Some(1), Some(2), Some(1), None]), [vec![1, 2]]);
 /// ```
-#[must_use]
 pub fn wait_cycles(waits_for: &[Option<usize>]) -> Vec<Vec<usize>> {
     let mut visited_from = vec![usize::MAX; waits_for.len()];
     let mut cycles = Vec::new();

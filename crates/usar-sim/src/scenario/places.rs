@@ -12,7 +12,6 @@ use crate::geometry::{Outline, RadiationZone, vector};
 
 impl DebrisFile {
     /// The outline of a piece of debris as the scenario places it. The shape must have been validated.
-    #[must_use]
     pub fn outline(&self) -> Outline {
         let shape = match &self.shape {
             DebrisShape::Disc(radius) => SharedShape::ball(*radius as f32),
@@ -32,7 +31,6 @@ impl DebrisFile {
 
 impl WallFile {
     /// Length of its middle line, in metres.
-    #[must_use]
     pub(crate) fn length_m(&self) -> f64 {
         libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1])
     }
@@ -67,7 +65,6 @@ impl WallFile {
 
 impl ScenarioFile {
     /// Debris at known places, followed by the parts of the walls.
-    #[must_use]
     pub fn obstacles(&self) -> Vec<DebrisFile> {
         let mut all = self.debris.clone();
         all.extend(self.walls.iter().flat_map(WallFile::pieces));
@@ -87,7 +84,6 @@ impl ScenarioFile {
 
     /// Properties and abilities of the robots of a row: their role's, with the changes of the row. `None` if
     /// the scenario has no such role.
-    #[must_use]
     pub fn body_of(&self, row: &Row) -> Option<RoleFile> {
         let mut body = self.roles.iter().find(|role| role.name == row.role)?.clone();
         if let Some(other) = row.body {
@@ -109,7 +105,6 @@ impl ScenarioFile {
 
 impl ConflictRules {
     /// The values of the paper's rule; the defaults under another resolver.
-    #[must_use]
     pub(crate) fn right_of_way(&self) -> RightOfWay {
         match self.resolver {
             ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) => rule,
@@ -120,7 +115,6 @@ impl ConflictRules {
 
 impl ZoneFile {
     /// The radiation zone at its place.
-    #[must_use]
     pub fn zone(&self) -> RadiationZone {
         RadiationZone { center: vector(self.at), radius: self.radius_m as f32 }
     }

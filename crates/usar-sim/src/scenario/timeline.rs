@@ -111,7 +111,6 @@ pub enum Happening {
 
 impl Happening {
     /// The piece of debris that falls in this event, if one falls.
-    #[must_use]
     pub(crate) fn falling(&self) -> Option<DebrisFile> {
         let Self::DebrisFalls { shape, at, rotation_deg, name } = self else { return None };
         let (shape, name) = (shape.clone(), name.clone());
@@ -119,7 +118,6 @@ impl Happening {
     }
 
     /// The radiation source that appears in this event, if one appears.
-    #[must_use]
     pub fn source(&self) -> Option<ZoneFile> {
         let Self::SourceAppears { at, radius_m, name } = self else { return None };
         Some(ZoneFile { at: *at, radius_m: *radius_m, name: name.clone() })
@@ -128,7 +126,6 @@ impl Happening {
 
 impl WallFile {
     /// The panel that closes a door.
-    #[must_use]
     pub fn panel(&self, door: &Door) -> DebrisFile {
         let (from, length) = (self.from, self.length_m());
         let along = [(self.to[0] - from[0]) / length, (self.to[1] - from[1]) / length];
@@ -151,7 +148,6 @@ impl ScenarioFile {
     }
 
     /// The moments in the order of their times. Moments of equal times keep the order of the file.
-    #[must_use]
     pub fn moments(&self) -> Vec<(usize, &Moment)> {
         let mut moments: Vec<(usize, &Moment)> = self.timeline.iter().enumerate().collect();
         moments.sort_by(|a, b| a.1.at_s.total_cmp(&b.1.at_s));
@@ -159,7 +155,6 @@ impl ScenarioFile {
     }
 
     /// Whether a task begins with an event of the timeline.
-    #[must_use]
     pub(crate) fn begins_later(&self, task: &TaskFile) -> bool {
         let first = self.moments().into_iter().find_map(|(_, moment)| match &moment.event {
             Happening::TaskBegins(name) if *name == task.name => Some(true),

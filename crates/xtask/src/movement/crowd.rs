@@ -91,13 +91,11 @@ pub struct Passage {
 
 impl Crowd {
     /// A crowd before a door of this width and depth.
-    #[must_use]
     pub fn at_door(robots: u32, width_m: f64, length_m: f64) -> Self {
         Self { robots, way: vec![Stretch { length_m, width_m }] }
     }
 
     /// A crowd before a corridor of 8 m by 1.8 m, as in the Hermes experiments, with a door at either end.
-    #[must_use]
     pub fn at_corridor(robots: u32, entrance_m: f64, exit_m: f64) -> Self {
         let door = |width_m| Stretch { length_m: DOOR_M, width_m };
         let corridor = Stretch { length_m: 8.0, width_m: 1.8 };
@@ -118,7 +116,6 @@ impl Crowd {
     }
 
     /// The crowd as a scenario of errands; the seed draws the starts.
-    #[must_use]
     pub fn file(&self, seed: u64, duration_s: f64) -> ScenarioFile {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let ([abreast, _], [begin, end]) = (self.ranks(), self.ends());
@@ -221,7 +218,6 @@ impl Crowd {
 }
 
 /// Flow between the first tenth and the last tenth of those who cross a line at these times, in order.
-#[must_use]
 pub fn steady_flow(times: &[f64]) -> Option<f64> {
     let last = times.len().checked_sub(1)?;
     let unsteady = (UNSTEADY * times.len() as f64).round() as usize;

@@ -55,7 +55,6 @@ pub struct Outcome {
 
 impl Agent {
     /// Time on the straight line at the preferred speed, in seconds.
-    #[must_use]
     pub fn straight_s(&self) -> f64 {
         distance(self.start, self.goal) / self.speed_mps
     }
@@ -93,7 +92,6 @@ fn to_origin(a: Point, b: Point) -> f64 {
 }
 
 /// The case of a seed: no agent can go straight past all those drawn before it.
-#[must_use]
 pub fn case(agents: u32, seed: u64) -> Vec<Agent> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut half = 0.5 + f64::from(agents) / 2.0;

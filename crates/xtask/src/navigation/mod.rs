@@ -75,7 +75,6 @@ Examples:
   navigation --resolver None --csv none.csv";
 
 /// Runs the command with the arguments of the program.
-#[must_use]
 pub fn main() -> ExitCode {
     let options = Options::parse_from(std::env::args().skip(1));
     match options.run() {
@@ -88,7 +87,6 @@ pub fn main() -> ExitCode {
 }
 
 /// The folder of the instances of seed 1.
-#[must_use]
 pub fn folder() -> PathBuf {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
     manifest.ancestors().nth(2).unwrap_or(manifest).join("scenarios/navigation")

@@ -54,7 +54,6 @@ pub struct Outcome {
 
 impl Outcome {
     /// Whether all robots arrived, and no bodies overlapped by more than a centimetre.
-    #[must_use]
     pub fn is_ok(&self) -> bool {
         self.failure.is_none() && self.late.is_empty() && !self.overlapped
     }
