@@ -8,7 +8,7 @@
 use rand::seq::SliceRandom;
 use rand::{SeedableRng, rngs::ChaCha8Rng};
 use thiserror::Error;
-use usar_sim::scenario::{DebrisFile, DebrisShape, Errand, Point, RoleFile, Row, Scenario, ScenarioFile};
+use usar_sim::scenario::{DebrisFile, DebrisShape, Errand, RoleFile, Row, Scenario, ScenarioFile};
 
 use crate::worlds::base;
 
@@ -160,24 +160,14 @@ impl Grid {
             sensing_m: 1000.0,
             ..RoleFile::default()
         };
-        let row = |center: Point| Row {
-            role: role.name.clone(),
-            count: 1,
-            center,
-            width_m: 0.0,
-            levels: None,
-            body: None,
-        };
-        let debris = |[low, high]: [Cell; 2]| DebrisFile {
-            shape: DebrisShape::Box((high[0] - low[0]) as f64, (high[1] - low[1]) as f64),
-            at: at([0, 1].map(|k| f64::midpoint(low[k] as f64, high[k] as f64))),
-            rotation_deg: 0.0,
-            movable: None,
-            name: None,
+        let debris = |[low, high]: [Cell; 2]| {
+            let shape = DebrisShape::Box((high[0] - low[0]) as f64, (high[1] - low[1]) as f64);
+            let middle = [0, 1].map(|k| f64::midpoint(low[k] as f64, high[k] as f64));
+            DebrisFile::fixed(shape, at(middle))
         };
         let mut file: ScenarioFile = base(0, [self.width as f64, self.height() as f64], duration_s);
         name.clone_into(&mut file.name);
-        file.team = agents.iter().map(|agent| row(middle(agent.from))).collect();
+        file.team = agents.iter().map(|agent| Row::of_one(&role.name, middle(agent.from))).collect();
         file.errands =
             (0..).zip(agents).map(|(robot, agent)| Errand { robot, to: vec![middle(agent.to)] }).collect();
         file.debris = self.boxes().into_iter().map(debris).collect();

@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use usar_sim::event::Event;
 use usar_sim::robot::{Robot, STANDING_MPS};
 use usar_sim::scenario::{
-    DebrisFile, DebrisShape, Errand, LayoutError, Normal, Point, RoleFile, Row, Scenario, ScenarioFile,
+    DebrisFile, DebrisShape, Errand, LayoutError, Normal, RoleFile, Row, Scenario, ScenarioFile,
 };
 use usar_sim::simulation::{Advance, Simulation};
 
@@ -134,7 +134,7 @@ impl Crowd {
             // Those in front go farthest, so that nobody has to pass those who have arrived.
             let column = f64::from(columns - 1 - robot / in_hall);
             let x = end + TO_PLACES_M + PLACES_M * column;
-            file.team.push(row(center));
+            file.team.push(Row::of_one("robot", center));
             file.errands.push(Errand { robot, to: vec![[x, beside(robot % in_hall, in_hall, PLACES_M)]] });
         }
         file.debris = self.walls(begin);
@@ -150,13 +150,8 @@ impl Crowd {
         for stretch in &self.way {
             let height = (HEIGHT_M - stretch.width_m) / 2.0;
             for y in [height / 2.0, HEIGHT_M - height / 2.0] {
-                walls.push(DebrisFile {
-                    shape: DebrisShape::Box(stretch.length_m, height),
-                    at: [x + stretch.length_m / 2.0, y],
-                    rotation_deg: 0.0,
-                    movable: None,
-                    name: None,
-                });
+                let shape = DebrisShape::Box(stretch.length_m, height);
+                walls.push(DebrisFile::fixed(shape, [x + stretch.length_m / 2.0, y]));
             }
             x += stretch.length_m;
         }
@@ -243,9 +238,4 @@ pub(super) fn role(speed_mps: f64) -> RoleFile {
         sensing_m: SENSING_M,
         ..RoleFile::default()
     }
-}
-
-/// One robot at a place.
-pub(super) fn row(center: Point) -> Row {
-    Row { role: "robot".to_owned(), count: 1, center, width_m: 0.0, levels: None, body: None }
 }
