@@ -84,28 +84,16 @@ pub struct Fault {
     pub reason: String,
 }
 
-/// Kinds of faults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FaultKind {
-    /// The trial reported it: an invariant was violated, a policy failed, or the physics broke down.
-    Failed,
-    /// The program has a defect.
-    Panicked,
-    /// The trial exceeded the time limit.
-    TimedOut,
-}
-
-impl FaultKind {
-    /// All kinds.
-    pub const ALL: [Self; 3] = [Self::Failed, Self::Panicked, Self::TimedOut];
-
-    /// Name as one word, for tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Failed => "failed",
-            Self::Panicked => "panicked",
-            Self::TimedOut => "timed_out",
-        }
+ron_tree::named! {
+    /// Kinds of faults.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum FaultKind {
+        /// The trial reported it: an invariant was violated, a policy failed, or the physics broke down.
+        Failed = "failed",
+        /// The program has a defect.
+        Panicked = "panicked",
+        /// The trial exceeded the time limit.
+        TimedOut = "timed_out",
     }
 }
 
