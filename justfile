@@ -32,10 +32,6 @@ movement *arguments:
 quiet *arguments:
     cargo run --release --package xtask -- quiet {{arguments}}
 
-# Maps of the grid benchmarks of multi-agent pathfinding (.map, .scen): how many of 100 robots arrive
-grid *arguments:
-    cargo run --release --package xtask -- grid {{arguments}}
-
 # Other methods on the same problems (ORCA, HRVO, HL by the public Python packages): half an hour; renews peers.csv and square.csv in crates/xtask/peers
 peers:
     cargo run --release --package xtask -- navigation --seeds 5 --worlds target/worlds.jsonl

@@ -11,7 +11,6 @@ pub mod damage;
 pub mod density;
 pub mod evidence;
 pub mod golden;
-pub mod grid;
 pub mod journeys;
 pub mod kills;
 pub mod limits;

@@ -6,8 +6,8 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    coverage, damage, golden, grid, kills, limits, mutations, pages, quiet, reference, scale, scenarios,
-    soak, work, worlds,
+    coverage, damage, golden, kills, limits, mutations, pages, quiet, reference, scale, scenarios, soak,
+    work, worlds,
 };
 
 fn main() -> ExitCode {
@@ -18,7 +18,6 @@ fn main() -> ExitCode {
         "coverage" => coverage::run(arguments),
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
-        "grid" => grid::run(arguments),
         "kills" => kills::run(arguments),
         "mutations" => mutations::run(arguments),
         "limits" => limits::run(),
@@ -34,7 +33,7 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: coverage, damage, golden, grid, kills, limits, movement, \
+                "xtask: no task {task:?}. Tasks: coverage, damage, golden, kills, limits, movement, \
                  mutations, navigation, pages, quiet, reference, scale, scenarios, soak, work, worlds"
             );
             ExitCode::from(2)

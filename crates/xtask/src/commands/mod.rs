@@ -3,7 +3,6 @@
 pub mod coverage;
 pub mod damage;
 pub mod golden;
-pub mod grid;
 pub mod kills;
 pub mod limits;
 pub mod mutations;
