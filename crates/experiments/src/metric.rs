@@ -150,16 +150,7 @@ const fn whole(name: &'static str, unit: &'static str, value: Value) -> Declarat
 }
 
 const fn per_task(name: &'static str, unit: &'static str, total: Value, task: TaskValue) -> Declaration {
-    Declaration {
-        name,
-        meaning: "",
-        unit,
-        figure: "",
-        is_primary: false,
-        direction: Direction::Neither,
-        cost: None,
-        scope: Scope::PerTask { total, task },
-    }
+    Declaration { scope: Scope::PerTask { total, task }, ..whole(name, unit, total) }
 }
 
 impl Declaration {

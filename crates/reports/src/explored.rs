@@ -7,7 +7,7 @@ use experiments::explore::{CHANCE, Index, Outcome, Row};
 use statistics::sensitivity::Known;
 
 use crate::figures::sensitivity;
-use crate::table::{headed, right};
+use crate::table::{between, headed, right};
 
 /// The drawing of a study's indices, and the table of the numbers behind it.
 ///
@@ -30,14 +30,14 @@ pub fn sensitivity_table(rows: &[&Row]) -> Table {
         let mut cells = vec![Cell::new(&row.parameter)];
         let mut add = |known: Known| {
             cells.push(right(&short(known.value)));
-            cells.push(right(&interval(known.interval)));
+            cells.push(right(&between(known.interval)));
         };
         match row.index {
             Index::Effects { effects, beyond } => {
                 add(effects.size);
                 add(effects.mean);
                 cells.push(right(&short(effects.spread.value)));
-                cells.push(right(&interval(beyond.and_then(|beyond| beyond.interval))));
+                cells.push(right(&between(beyond.and_then(|beyond| beyond.interval))));
             }
             Index::Shares(shares) => {
                 add(shares.first);
@@ -51,10 +51,6 @@ pub fn sensitivity_table(rows: &[&Row]) -> Table {
         table.add_row(cells);
     }
     table
-}
-
-fn interval(interval: Option<[f64; 2]>) -> String {
-    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
 }
 
 /// Most parameters whose effects a sentence tells; the others are named.

@@ -72,9 +72,9 @@ pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
     for c in comparisons {
         table.add_row([
             Cell::new(format!("{} - {}", c.a, c.b)),
-            right(&c.difference.map_or("-".to_owned(), short)),
+            number(c.difference),
             right(&between(c.interval)),
-            right(&c.p_holm.map_or("-".to_owned(), short_p)),
+            right(&or_dash(c.p_holm, short_p)),
             Cell::new(c.verdict_in_words()),
         ]);
     }
@@ -82,8 +82,23 @@ pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
 }
 
 /// An interval in words.
-pub(crate) fn between(interval: Option<[f64; 2]>) -> String {
-    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
+pub fn between(interval: Option<[f64; 2]>) -> String {
+    or_dash(interval, |[low, high]| format!("{} to {}", short(low), short(high)))
+}
+
+/// A value as text; a dash if there is none.
+pub fn or_dash<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
+    value.map_or("-".to_owned(), text)
+}
+
+/// A short number as a cell; a dash if there is none.
+pub fn number(value: Option<f64>) -> Cell {
+    right(&or_dash(value, short))
+}
+
+/// A mean as a cell; a dash if there is none.
+pub fn mean(value: Option<f64>) -> Cell {
+    right(&or_dash(value, |value| digits(value, 4)))
 }
 
 /// A row for each comparison, with all that is known of it.
@@ -106,12 +121,10 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
     ];
     let of_margin = ["pairs for margin"].into_iter().filter(|_| is_judged);
     let mut table = headed(header.into_iter().chain(of_margin).collect::<Vec<_>>());
-    let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
-    let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
     for c in comparisons {
-        let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
+        let p = |p: Option<f64>| right(&or_dash(p, short_p));
         let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
-        let of_margin = [right(&pairs.map_or("-".to_owned(), |pairs| pairs.to_string()))];
+        let of_margin = [right(&or_dash(pairs, |pairs| pairs.to_string()))];
         let cells = [
             Cell::new(&c.metric),
             Cell::new(format!("{} - {}", c.a, c.b)),
@@ -123,7 +136,7 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
             number(c.shift),
             p(c.p),
             p(c.p_holm),
-            right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
+            right(&or_dash(c.effect, |effect| format!("{effect:.2}"))),
             number(c.detectable),
             Cell::new(c.verdict_in_words()),
         ];
@@ -141,7 +154,7 @@ pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table
             ("round", true, right(&round.round.to_string())),
             ("task", true, Cell::new(&record.tasks[round.task.index()].task)),
             ("from s", false, right(&format!("{:.1}", round.start_s))),
-            ("to s", true, right(&round.end_s.map_or("-".to_owned(), |end| format!("{end:.1}")))),
+            ("to s", true, right(&or_dash(round.end_s, |end| format!("{end:.1}")))),
             ("members", true, Cell::new(members.join(" "))),
             ("secured", false, right(&round.secured.to_string())),
             ("rescued", true, right(&round.rescued.to_string())),
