@@ -65,10 +65,7 @@ export function drawRoutes(sheet: Sheet, places: Point[]): void {
     paths.clear();
     context.globalAlpha = 1;
   };
-  if (looks.routes)
-    places.forEach((_, robot) => {
-      add(robot);
-    });
+  if (looks.routes) places.forEach((_, robot) => add(robot));
   stroke(1, 0.32);
   if (looks.selected === null || looks.selected >= places.length) return;
   add(looks.selected);

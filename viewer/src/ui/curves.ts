@@ -150,9 +150,9 @@ export class Curves {
       context.setLineDash([]);
       context.globalAlpha = 1;
       if (number !== focus) return;
-      tasks.forEach((times, task) => {
-        now.push(swatch(groupColour(task)), `${countUntil(times, this.clock.time)} `);
-      });
+      tasks.forEach((times, task) =>
+        now.push(swatch(groupColour(task)), `${countUntil(times, this.clock.time)} `),
+      );
     });
     this.cursor(sheet, context);
     this.rescuedTold.replaceChildren(...now);
@@ -170,21 +170,17 @@ export class Curves {
         if (number === focus) {
           context.globalAlpha = 0.15;
           context.beginPath();
-          levels.forEach((level) => {
-            context.lineTo(this.x(sheet, level.time), y(level[of][0]));
-          });
-          [...levels].reverse().forEach((level) => {
-            context.lineTo(this.x(sheet, level.time), y(level[of][2]));
-          });
+          levels.forEach((level) => context.lineTo(this.x(sheet, level.time), y(level[of][0])));
+          [...levels]
+            .reverse()
+            .forEach((level) => context.lineTo(this.x(sheet, level.time), y(level[of][2])));
           context.fill();
         }
         context.globalAlpha = 1;
         context.lineWidth = number === focus ? 2 : 1.25;
         context.setLineDash(DASHES[number % DASHES.length]);
         context.beginPath();
-        levels.forEach((level) => {
-          context.lineTo(this.x(sheet, level.time), y(level[of][1]));
-        });
+        levels.forEach((level) => context.lineTo(this.x(sheet, level.time), y(level[of][1])));
         context.stroke();
         context.setLineDash([]);
       };

@@ -47,9 +47,9 @@ export class RoundPanel {
   private pointed: [row: number, column: number] | null = null;
 
   constructor(private readonly seek: (time: number) => void) {
-    this.sheet = new Sheet({ class: 'matrix', role: 'img', 'aria-label': 'Relative Needs Entropy' }, () => {
-      this.drawMatrix();
-    });
+    this.sheet = new Sheet({ class: 'matrix', role: 'img', 'aria-label': 'Relative Needs Entropy' }, () =>
+      this.drawMatrix(),
+    );
     const point = (event: PointerEvent): void => {
       const { left, top } = this.sheet.canvas.getBoundingClientRect();
       this.pointed = this.cellAt(event.clientX - left, event.clientY - top);
@@ -90,15 +90,9 @@ export class RoundPanel {
 
   private head(recording: Recording, number: number): HTMLElement {
     const { decisions, header } = recording;
-    const go = (to: number): void => {
-      this.seek(decisions[to].step * header.dt_s);
-    };
-    const before = button('‹', 'The round before', () => {
-      go(number - 1);
-    });
-    const after = button('›', 'The next round', () => {
-      go(number + 1);
-    });
+    const go = (to: number): void => this.seek(decisions[to].step * header.dt_s);
+    const before = button('‹', 'The round before', () => go(number - 1));
+    const after = button('›', 'The next round', () => go(number + 1));
     before.disabled = number === 0;
     after.disabled = number + 1 >= decisions.length;
     const title = element('h2', {}, `Round ${decisions[number].question.round}`);

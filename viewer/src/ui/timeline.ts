@@ -107,9 +107,7 @@ export class Timeline {
     canvas.setAttribute('aria-valuetext', clockTime(this.clock.time));
     context.font = '11px system-ui, sans-serif';
     context.textBaseline = 'middle';
-    this.recordings.forEach((recording, lane) => {
-      this.drawLane(context, recording, 2 + 24 * lane);
-    });
+    this.recordings.forEach((recording, lane) => this.drawLane(context, recording, 2 + 24 * lane));
     context.fillStyle = colours.soft;
     const labels = Math.min(Math.max(this.sheet.width / 64, 2), 12);
     const length = this.clock.end - this.clock.start;
