@@ -104,23 +104,10 @@ pub fn mean(value: Option<f64>) -> Cell {
 /// A row for each comparison, with all that is known of it.
 pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
     let is_judged = comparisons.iter().any(|comparison| comparison.judged.is_some());
-    let header = [
-        "metric",
-        "A - B",
-        "n",
-        "mean A",
-        "mean B",
-        "difference",
-        "95 % interval",
-        "shift",
-        "p",
-        "p Holm",
-        "effect",
-        "detectable",
-        "verdict",
-    ];
+    let header =
+        "metric,A - B,n,mean A,mean B,difference,95 % interval,shift,p,p Holm,effect,detectable,verdict";
     let of_margin = ["pairs for margin"].into_iter().filter(|_| is_judged);
-    let mut table = headed(header.into_iter().chain(of_margin).collect::<Vec<_>>());
+    let mut table = headed(header.split(',').chain(of_margin).collect::<Vec<_>>());
     for c in comparisons {
         let p = |p: Option<f64>| right(&or_dash(p, short_p));
         let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);

@@ -53,16 +53,10 @@ pub(crate) fn examples_table(examples: &[Example]) -> Table {
 /// The verdicts expected from experiments of other sizes, and the differences that they find; `None` if
 /// there are too few trials.
 pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
-    let mut table = headed([
-        "claim",
-        "leans to",
-        "pairs for 80 %",
-        "of 10 pairs: holds",
-        "does not",
-        "undecided",
-        "difference",
-        "least found by 10",
-    ]);
+    let mut table = headed(
+        "claim,leans to,pairs for 80 %,of 10 pairs: holds,does not,undecided,difference,least found by 10"
+            .split(','),
+    );
     let share = |share: f64| right(&format!("{:.0} %", 100.0 * share));
     if judged.powers.iter().all(Option::is_none) {
         return None;

@@ -47,17 +47,9 @@ pub fn averaged_table(rows: &[(String, Vec<Option<Difference>>)], metrics: &Cata
 
 /// All readings against other policies.
 pub fn rivals_table(rows: &[RivalRow]) -> Table {
-    let mut table = headed([
-        "metric",
-        "against",
-        "above",
-        "below",
-        "neither",
-        "corrected: above",
-        "corrected: below",
-        "least",
-        "greatest",
-    ]);
+    let mut table = headed(
+        "metric,against,above,below,neither,corrected: above,corrected: below,least,greatest".split(','),
+    );
     for row in rows {
         let end = |(reading, difference): &(String, Difference)| {
             Cell::new(format!("{} ± {} ({reading})", signed(difference.mean), digits(difference.half, 2)))

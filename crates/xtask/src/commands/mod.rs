@@ -28,6 +28,11 @@ fn silence_triangulations() {
     }));
 }
 
+/// The whole number at this place of the arguments.
+fn number(arguments: &[String], at: usize, usual: u64) -> u64 {
+    arguments.get(at).map_or(usual, |text| text.parse().expect("a whole number"))
+}
+
 /// The program `usar` that was built into the same folder as this one.
 fn usar() -> PathBuf {
     std::env::current_exe().expect("this program has a path").with_file_name("usar")

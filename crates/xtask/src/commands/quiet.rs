@@ -11,7 +11,7 @@ use usar_sim::scenario::Scenario;
 use xtask::quiet::{BothWays, both_ways};
 use xtask::{random, rooms, worlds};
 
-use super::worlds::lasting;
+use super::{number, worlds::lasting};
 
 /// A kind of worlds: its name, and the world of a seed.
 type Kind = (&'static str, fn(u64) -> Scenario);
@@ -19,9 +19,8 @@ type Kind = (&'static str, fn(u64) -> Scenario);
 const KINDS: [Kind; 3] = [("open", worlds::world), ("rooms", rooms::rooms), ("all kinds", random::scenario)];
 
 pub fn run(arguments: &[String]) -> ExitCode {
-    let number =
-        |at: usize, default: u64| arguments.get(at).map_or(default, |text| text.parse().expect("a number"));
-    let (first, count, seconds) = (number(0, 0), number(1, 170), number(2, 200) as f64);
+    let (first, count, seconds) =
+        (number(arguments, 0, 0), number(arguments, 1, 170), number(arguments, 2, 200) as f64);
     let mut differ = 0;
     for (kind, world) in KINDS {
         let run = |seed: u64| Some((seed, both_ways(&lasting(&world(seed), seconds), seed)?));
