@@ -1,6 +1,7 @@
 /** The course of trials: rescuees delivered and levels over time, with a cursor. */
 
 import { inWords } from '../recording/words';
+import { drawLine } from '../draw/marks';
 import { groupColour, theme } from '../draw/theme';
 import type { Recording } from '../recording/recording';
 import type { Clock } from './clock';
@@ -58,17 +59,10 @@ export class Curves {
       changed,
     );
     for (const sheet of [this.rescued, this.levels]) {
-      const seek = (event: PointerEvent): void => {
-        const part = (event.offsetX - LEFT) / Math.max(sheet.width - LEFT - RIGHT, 1);
+      sheet.onDrag(({ offsetX }) => {
+        const part = (offsetX - LEFT) / Math.max(sheet.width - LEFT - RIGHT, 1);
         clock.seek(clock.start + part * (clock.end - clock.start));
         changed();
-      };
-      sheet.canvas.addEventListener('pointerdown', (event) => {
-        sheet.canvas.setPointerCapture(event.pointerId);
-        seek(event);
-      });
-      sheet.canvas.addEventListener('pointermove', (event) => {
-        if (sheet.canvas.hasPointerCapture(event.pointerId)) seek(event);
       });
     }
     this.root = element('section', { class: 'panel curves' });
@@ -110,10 +104,7 @@ export class Curves {
     context.lineWidth = 1;
     for (const value of [0, most / 2, most]) {
       context.strokeStyle = colours.faint;
-      context.beginPath();
-      context.moveTo(LEFT, y(value));
-      context.lineTo(sheet.width - RIGHT, y(value));
-      context.stroke();
+      drawLine(context, [LEFT, y(value)], [sheet.width - RIGHT, y(value)]);
       context.fillStyle = colours.soft;
       context.fillText(`${Number(value.toFixed(0))}${unit}`, LEFT - 5, y(value));
     }

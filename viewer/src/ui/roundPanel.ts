@@ -1,9 +1,10 @@
 /** How the team was grouped in a round: the groups, who would trust whom, and the runner-up. */
 
 import { inWords } from '../recording/words';
+import { drawLine } from '../draw/marks';
 import { groupColour, theme } from '../draw/theme';
 import type { Recording } from '../recording/recording';
-import type { Score, TimedDecision } from '../recording/types';
+import type { Point, Score, TimedDecision } from '../recording/types';
 import { Sheet, button, element, swatch } from './dom';
 
 /** The members of a group; of a large one, how many they are. */
@@ -187,10 +188,8 @@ export class RoundPanel {
         if (nats === null) {
           context.strokeStyle = colours.soft;
           context.lineWidth = 1;
-          context.beginPath();
-          context.moveTo(left + j * cell + 0.25 * cell, top + (i + 0.75) * cell);
-          context.lineTo(left + (j + 0.75) * cell, top + (i + 0.25) * cell);
-          context.stroke();
+          const at = (x: number, y: number): Point => [left + (j + x) * cell, top + (i + y) * cell];
+          drawLine(context, at(0.25, 0.75), at(0.75, 0.25));
         }
       });
     });
