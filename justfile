@@ -32,10 +32,6 @@ movement *arguments:
 quiet *arguments:
     cargo run --release --package xtask -- quiet {{arguments}}
 
-# Maps of the grid benchmarks of multi-agent pathfinding (.map, .scen): how many of 100 robots arrive
-grid *arguments:
-    cargo run --release --package xtask -- grid {{arguments}}
-
 # Other methods on the same problems (ORCA, HRVO, HL by the public Python packages): half an hour; renews peers.csv and square.csv in crates/xtask/peers
 peers:
     cargo run --release --package xtask -- navigation --seeds 5 --worlds target/worlds.jsonl
@@ -54,11 +50,6 @@ kills *arguments:
 damage *arguments:
     cargo build --release --package usar
     cargo run --release --package xtask -- damage {{arguments}}
-
-# A million trials by a fast fake, in 50 shards: time, memory and disk of merge, compare and report
-million *arguments:
-    cargo build --release --package usar
-    cargo run --release --package xtask -- million {{arguments}}
 
 # A sweep on Slurm itself, with a task killed and one cancelled: installs Debian's slurm-wlm, needs root
 slurm:
@@ -156,8 +147,3 @@ results:
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:
     cargo run --release --package xtask -- coverage {{arguments}}
-
-# The search for scenarios/paper-calibrated.ron, from the design of its readings to the choice (docs/calibration.md): hours; goes on where it was broken off
-calibrate:
-    cargo build --release --package usar
-    cargo run --release --package xtask -- calibration

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use usar_sim::scenario::{DebrisShape, Scenario};
-use xtask::grid::Grid;
-use xtask::journeys::Journeys;
+use usar_sim::scenario::Scenario;
 use xtask::navigation::problems::PROBLEMS;
 use xtask::navigation::{FILE_SEED, folder, trial};
 
@@ -60,46 +58,6 @@ fn robots_queue_before_a_bottleneck_and_do_not_touch() {
 fn robots_enter_a_crossing_that_others_have_left_behind() {
     let outcome = outcome("lane_crossing_8", FILE_SEED);
     assert!(outcome.is_ok() && outcome.flow < 2.0, "{}", outcome.flow);
-}
-
-/// A one-lane crossing with two pockets, in the format of the grid benchmarks.
-const CONNECTOR: &str = "type octile\nheight 5\nwidth 6\nmap\n...TTT\n.T.@@@\n......\n@@@.T.\n@@@...\n";
-
-#[test]
-fn a_grid_map_is_a_world_of_boxes_in_which_agents_arrive() {
-    let grid = Grid::parse(CONNECTOR).unwrap();
-    let scen = "version 1\n0\tc.map\t6\t5\t0\t0\t5\t4\t9.0\n0\tc.map\t6\t5\t5\t4\t0\t0\t9.0\n";
-    let agents = grid.agents(scen, 10).unwrap();
-    assert_eq!(agents.len(), 2);
-    let scenario = grid.scenario(&agents, "connector", 200.0);
-    let center = format!("{:?}", scenario.team[0].center);
-    assert_eq!(center, "[0.5, 4.5]", "rows are counted from the top");
-    let blocked: f64 = scenario
-        .debris
-        .iter()
-        .map(|piece| match piece.shape {
-            DebrisShape::Box(width, height) => width * height,
-            _ => panic!("a box"),
-        })
-        .sum();
-    assert!((blocked - 14.0).abs() < 1e-9, "each blocked cell once: {blocked}");
-    for agents in [agents, grid.drawn(5, 1)] {
-        let record = Journeys::run(&grid.scenario(&agents, "connector", 200.0), 1).unwrap().record;
-        assert_eq!(record.counts.errands_done as usize, agents.len());
-    }
-}
-
-#[test]
-fn what_is_no_grid_map_is_told_with_its_line() {
-    let told = |text: &str| Grid::parse(text).err().unwrap().to_string();
-    assert_eq!(told("type octile\n"), "line 1: must have a line `map`, found \"\"");
-    assert_eq!(told("map\n...\n..\n"), "line 3: must be as long as the first row, found \"..\"");
-    let agent = |line: &str| {
-        let grid = Grid::parse(CONNECTOR).unwrap();
-        grid.agents(&format!("version 1\n{line}\n"), 1).unwrap_err().to_string()
-    };
-    assert!(agent("0 c.map 6 5 0").contains("line 2: must have bucket, map"), "{}", agent("0 c.map 6 5 0"));
-    assert!(agent("0 c.map 6 5 1 1 0 0 1").contains("from a free cell to a free cell"));
 }
 
 /// In this trial, a robot in a corner is asked to make room by the very robot that is in its way.

@@ -32,9 +32,7 @@ const printed = (path: string, policy: string, seed: string): string =>
   command('run', path, '--policy', policy, '--seed', seed, '--json', '--quiet').trimEnd();
 
 describe('the module', () => {
-  it('imports nothing', () => {
-    expect(WebAssembly.Module.imports(compiled)).toEqual([]);
-  });
+  it('imports nothing', () => expect(WebAssembly.Module.imports(compiled)).toEqual([]));
 
   it('tells what it cannot do in a sentence', () => {
     expect(() => module.json('advance', '1')).toThrow('no trial is running');

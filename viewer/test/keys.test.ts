@@ -42,9 +42,8 @@ describe('keys', () => {
 
   it('elsewhere do what they say', () => {
     const { actions, done } = noting();
-    const press = (name: string, more?: Partial<KeyboardEvent>): void => {
+    const press = (name: string, more?: Partial<KeyboardEvent>): void =>
       actionOf(key(name, within(), more), actions)?.();
-    };
     for (const name of [' ', '[', '+', 'g', 'x', 'toString']) press(name);
     press('ArrowLeft', { shiftKey: true });
     press('c', { ctrlKey: true });

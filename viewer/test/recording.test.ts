@@ -46,9 +46,8 @@ describe('numbers', () => {
 });
 
 describe('a recording', () => {
-  it('has the checksum that all the world has', () => {
-    expect(crc32(new TextEncoder().encode('123456789'))).toBe(0xcbf43926);
-  });
+  it('has the checksum that all the world has', () =>
+    expect(crc32(new TextEncoder().encode('123456789'))).toBe(0xcbf43926));
 
   it('is read as the program reads it', async () => {
     const recording = await Recording.read('small', file);

@@ -87,9 +87,8 @@ describe('events', () => {
 });
 
 describe('numbers', () => {
-  it('are counted up to a time', () => {
-    expect([0, 1, 2.5, 9].map((time) => countUntil([1, 2, 3], time))).toEqual([0, 1, 2, 3]);
-  });
+  it('are counted up to a time', () =>
+    expect([0, 1, 2.5, 9].map((time) => countUntil([1, 2, 3], time))).toEqual([0, 1, 2, 3]));
 
   it('have colours from light to strong', () => {
     expect(heat(0, false)).toBe('rgb(243, 246, 248)');

@@ -80,7 +80,6 @@ impl Relation {
 
 impl Expectation {
     /// Whether an interval judges it. A share of all seeds is refuted by one seed, which is never an error.
-    #[must_use]
     pub fn has_interval(&self) -> bool {
         !matches!(self, Self::Share { share, .. } if *share >= 1.0)
     }
@@ -125,7 +124,6 @@ pub struct Judgement {
 }
 
 /// The looks up to this many trials: 20, 40, 80, ..., and the last.
-#[must_use]
 pub fn looks(most: u32) -> Vec<u32> {
     let doubled = std::iter::successors(Some(FIRST_LOOK), |look| look.checked_mul(2));
     doubled.take_while(|look| *look < most).chain([most]).collect()
@@ -134,7 +132,6 @@ pub fn looks(most: u32) -> Vec<u32> {
 /// Judges an expectation by values of trials. `value(policy, metric)` has one value for each trial, `None`
 /// where the metric is undefined. `intervals` is the number of intervals that share the allowed error: looks
 /// times cases times expectations. `is_last` says whether this is the last look.
-#[must_use]
 pub fn judge(
     expected: &Expected,
     value: impl Fn(usize, usize) -> Vec<Option<f64>>,

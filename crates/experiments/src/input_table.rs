@@ -126,19 +126,16 @@ impl InputTable {
     }
 
     /// The place of a column.
-    #[must_use]
     pub fn column(&self, name: &str) -> Option<usize> {
         self.header.iter().position(|column| column == name)
     }
 
     /// Its rows.
-    #[must_use]
     pub fn rows(&self) -> impl ExactSizeIterator<Item = InputRow<'_>> {
         self.rows.iter().map(|(line, cells)| InputRow { table: self, cells, line: *line })
     }
 
     /// The failure of a table with problems: all of them in the order of their lines, or the first 20.
-    #[must_use]
     pub fn refused(&self, mut problems: Vec<Problem>) -> Failure {
         problems.sort_by_key(|(line, _)| *line);
         let mut lines: Vec<String> = problems
@@ -153,7 +150,6 @@ impl InputTable {
     }
 
     /// The failure of a table with one problem.
-    #[must_use]
     pub fn refused_at(&self, line: usize, problem: impl Display) -> Failure {
         Failure::Input(format!("{}:{line}: {problem}", self.file))
     }
@@ -161,7 +157,6 @@ impl InputTable {
 
 impl<'t> InputRow<'t> {
     /// The text of a column; `None` if the table has no such column.
-    #[must_use]
     pub fn text(&self, column: &str) -> Option<&'t str> {
         self.cells.get(self.table.column(column)?)
     }

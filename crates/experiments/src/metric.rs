@@ -150,16 +150,7 @@ const fn whole(name: &'static str, unit: &'static str, value: Value) -> Declarat
 }
 
 const fn per_task(name: &'static str, unit: &'static str, total: Value, task: TaskValue) -> Declaration {
-    Declaration {
-        name,
-        meaning: "",
-        unit,
-        figure: "",
-        is_primary: false,
-        direction: Direction::Neither,
-        cost: None,
-        scope: Scope::PerTask { total, task },
-    }
+    Declaration { scope: Scope::PerTask { total, task }, ..whole(name, unit, total) }
 }
 
 impl Declaration {
@@ -224,7 +215,6 @@ fn ratio(cost: f64, rescuees: u32) -> Option<f64> {
 }
 
 /// The names of a scenario's tasks, in the order of their table.
-#[must_use]
 pub fn task_names(scenario: &Scenario) -> Vec<String> {
     scenario.tasks.iter().map(|task| task.name.clone()).collect()
 }
@@ -266,7 +256,6 @@ pub struct Metric {
 impl Metric {
     /// The name of its column in `trials.csv`, in the standard words whatever those of the scenario; it ends
     /// with the unit of a time or a length.
-    #[must_use]
     pub fn column(&self) -> String {
         let column = self.standard.replace('.', "_");
         let unit = match self.unit {
@@ -278,7 +267,6 @@ impl Metric {
     }
 
     /// The name of its column without the task, for a table that has the task in a column of its own.
-    #[must_use]
     pub fn declared_column(&self) -> String {
         let whole = self.column();
         let part = format!("_{}", self.part);
@@ -292,7 +280,6 @@ impl Metric {
     }
 
     /// Its name with its unit, if it has one.
-    #[must_use]
     pub fn name_with_unit(&self) -> String {
         if self.unit.is_empty() {
             self.name.clone()
@@ -302,7 +289,6 @@ impl Metric {
     }
 
     /// Its value; `None` where it is undefined.
-    #[must_use]
     pub fn value(&self, record: &TrialRecord) -> Option<f64> {
         let value = match self.source {
             Source::Trial(value) => value(record),
@@ -312,13 +298,11 @@ impl Metric {
     }
 
     /// The task of the metric, or [`TOTAL`]; empty for a metric without tasks.
-    #[must_use]
     pub fn part(&self) -> &str {
         &self.part
     }
 
     /// Whether it is the metric of all tasks together.
-    #[must_use]
     pub fn is_total(&self) -> bool {
         self.part == TOTAL
     }
@@ -342,7 +326,6 @@ impl Deref for Catalogue {
 impl Catalogue {
     /// All metrics of a scenario: of its tasks, in its words; those of reports where the base
     /// goes by reports.
-    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self::of_cases(scenario, scenario.goes_by_reports())
     }
@@ -382,7 +365,6 @@ impl Catalogue {
     }
 
     /// The places of the cost and of the rescuees whose ratio the metric is; `None` for other metrics.
-    #[must_use]
     pub fn sums(&self, place: usize) -> Option<[usize; 2]> {
         let Metric { cost, part, .. } = &self[place];
         let of = |declared: &str| {
@@ -392,7 +374,6 @@ impl Catalogue {
     }
 
     /// The metrics declared under one name: the total, then one for each task; or the only one.
-    #[must_use]
     pub fn declared(&self, name: &str) -> Vec<usize> {
         (0..self.len()).filter(|place| self[*place].declared == name).collect()
     }
@@ -420,7 +401,6 @@ impl Catalogue {
     }
 
     /// The figures of the report in their order, each with the places of its metrics.
-    #[must_use]
     pub fn figures(&self) -> Vec<(&str, Vec<usize>)> {
         let mut figures: Vec<(&str, Vec<usize>)> = Vec::new();
         for (place, metric) in self.iter().enumerate().filter(|(_, metric)| !metric.figure.is_empty()) {
@@ -433,7 +413,6 @@ impl Catalogue {
     }
 
     /// The values of all metrics of a trial, in their order.
-    #[must_use]
     pub fn measure(&self, record: &TrialRecord) -> Vec<Option<f64>> {
         self.iter().map(|metric| metric.value(record)).collect()
     }

@@ -23,7 +23,6 @@ fn from_sources(path: &str) -> &str {
 
 /// The message of a panic that this thread caught, with file and line if [`note_panic`] is the
 /// panic hook.
-#[must_use]
 pub fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     let text = text.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a defect without a message");

@@ -69,7 +69,6 @@ pub(crate) fn part(shard: Option<Shard>) -> String {
 
 impl Manifest {
     /// The manifest of an experiment that is not complete yet.
-    #[must_use]
     pub fn new(experiment: &Experiment, shard: Option<Shard>, files: Vec<FileHash>) -> Self {
         Self {
             schema_version: SCHEMA_VERSION,
@@ -140,20 +139,17 @@ impl Manifest {
     }
 
     /// Which part of the sweep this is, in words.
-    #[must_use]
     pub fn part(&self) -> String {
         part(self.shard)
     }
 
     /// The program that made the results.
-    #[must_use]
     pub fn program(&self) -> Program {
         let (version, source) = (self.version.clone(), self.source.clone());
         Program { version, source, policies: self.policy_sources.clone() }
     }
 
     /// Why the other results do not have all policies of these; `None` if they do.
-    #[must_use]
     pub fn policies_lost(&self, other: &Self) -> Option<String> {
         let has = |policy: &String| other.policies.contains(policy);
         let lists = || [self, other].map(|manifest| manifest.policies.join(", "));
@@ -164,7 +160,6 @@ impl Manifest {
     }
 
     /// The policies of both whose sources differ, as they were written.
-    #[must_use]
     pub fn policies_changed(&self, other: &Self) -> Vec<&str> {
         let sources = |manifest: &Self, policy: &String| {
             let number = manifest.policies.iter().position(|other| other == policy)?;
@@ -176,7 +171,6 @@ impl Manifest {
 
     /// Reasons why results of this manifest must not be continued by or merged with results of the other,
     /// one sentence each. The policies, the number of trials and the part of the sweep are not compared.
-    #[must_use]
     pub fn differences(&self, other: &Self) -> Vec<String> {
         let mut differences = Vec::new();
         let mut compare = |what: &str, there: String, now: String| {
@@ -222,7 +216,6 @@ impl Manifest {
 }
 
 /// The fields in which two resolved scenarios differ, one sentence each.
-#[must_use]
 pub fn scenario_differences(there: &str, now: &str) -> Vec<String> {
     let tree = |text| Node::parse(text).unwrap_or_else(|_| Node::word(""));
     let (there, now) = (tree(there), tree(now));

@@ -45,7 +45,6 @@ pub struct Directed {
 }
 
 /// The choice of each policy. The oracle and policies that cannot group this team are left out.
-#[must_use]
 pub fn other_choices(question: &Question, chosen: &Assignment, policies: &[PolicySpec]) -> Vec<OtherChoice> {
     let choice = |spec: &PolicySpec| {
         let assignment = spec.made().decide(question).ok()?.assignment;

@@ -4,6 +4,7 @@ use recording::World;
 use usar_sim::scenario::{DebrisFile, DebrisShape, Point, ZoneFile};
 
 use crate::legend::{Entry, Sign};
+use crate::picture::{Look, Picture};
 use crate::shapes::corners;
 use crate::sheet::Sheet;
 use crate::svg::{Anchor, Lettering, Num, Path};
@@ -17,8 +18,32 @@ const GRID_M: f64 = 10.0;
 /// Largest number of grid lines of the floor in one direction.
 const MOST_LINES: f64 = 60.0;
 
+/// A sheet with the floor and the places of a world, whose window is open.
+pub(crate) fn begun<'l>(look: &'l Look, world: &World, title: &str) -> Sheet<'l> {
+    let mut sheet = Sheet::new(look, world.arena_m, title);
+    draw_floor(&mut sheet);
+    let [corner, size] = sheet.map();
+    sheet.svg.begin_window(corner, size);
+    draw_places(&mut sheet, world);
+    sheet
+}
+
+/// The picture with its walls and its legend: these entries, then those of the ground; `first_sampled` as in a
+/// [`Plan`](crate::Plan).
+pub(crate) fn finished(
+    mut sheet: Sheet,
+    world: &World,
+    mut legend: Vec<Entry>,
+    first_sampled: [usize; 2],
+) -> Picture {
+    sheet.svg.end_window();
+    draw_walls(&mut sheet);
+    legend.extend(entries(world, sheet.unit, first_sampled));
+    sheet.finish(legend)
+}
+
 /// Draws the arena's floor.
-pub(crate) fn draw_floor(sheet: &mut Sheet) {
+fn draw_floor(sheet: &mut Sheet) {
     let [corner, size] = sheet.map();
     sheet.svg.rect(corner, size, 0.0, &format!("fill=\"{GROUND}\""));
     let mut lines = Path::default();
@@ -39,7 +64,7 @@ pub(crate) fn draw_floor(sheet: &mut Sheet) {
 }
 
 /// Draws the walls around the arena.
-pub(crate) fn draw_walls(sheet: &mut Sheet) {
+fn draw_walls(sheet: &mut Sheet) {
     let [[x, y], [width, height]] = sheet.map();
     let wall = (0.3 * sheet.scale).clamp(2.0 * sheet.unit, 5.0 * sheet.unit);
     let looks = format!("fill=\"none\" stroke=\"{WALL}\" stroke-width=\"{}\"", Num(wall));
@@ -53,7 +78,7 @@ fn draw_box(sheet: &mut Sheet, center: Point, size: Point, looks: &str) {
 }
 
 /// Draws the places of the tasks, the rest places and the homes.
-pub(crate) fn draw_places(sheet: &mut Sheet, world: &World) {
+fn draw_places(sheet: &mut Sheet, world: &World) {
     let line = Num(sheet.unit);
     for (number, task) in world.tasks.iter().enumerate() {
         let colour = colour(number);
@@ -197,13 +222,7 @@ pub(crate) fn draw_rescuees(sheet: &mut Sheet, world: &World, state: impl Fn(usi
 
 /// The legend's entries for the signs of the ground that occur in the world. `debris` and
 /// `zones` are the numbers of the first sampled piece of debris and of the first sampled zone.
-pub(crate) fn entries(
-    world: &World,
-    unit: f64,
-    debris: usize,
-    zones: usize,
-    has_waiting: bool,
-) -> Vec<Entry> {
+fn entries(world: &World, unit: f64, [debris, zones]: [usize; 2]) -> Vec<Entry> {
     let mut entries = Vec::new();
     let mut add = |is_there: bool, sign: Sign, means: &str| {
         if is_there {
@@ -212,7 +231,7 @@ pub(crate) fn entries(
     };
     let is_movable = |piece: &DebrisFile| piece.movable.is_some();
     let (placed, drawn) = world.debris.split_at(debris.min(world.debris.len()));
-    add(has_waiting, Sign::Square(format!("fill=\"{RESCUEE}\"")), "waiting to be rescued");
+    add(!world.rescuees.is_empty(), Sign::Square(format!("fill=\"{RESCUEE}\"")), "waiting to be rescued");
     add(!placed.iter().all(is_movable), Sign::Square(fixed_looks(unit)), "debris");
     add(
         !drawn.is_empty(),

@@ -5,7 +5,6 @@ use recording::{Frame, Recording};
 use crate::error::PictureError;
 use crate::ground::{self, Lies};
 use crate::picture::{Look, Picture};
-use crate::sheet::Sheet;
 use crate::team;
 
 /// Draws the state at a frame of a recording, numbered from 0.
@@ -14,11 +13,7 @@ use crate::team;
 /// There is no such frame.
 pub fn moment(recording: &Recording, number: usize, look: &Look) -> Result<Picture, PictureError> {
     let (frame, world) = (recording.frame(number)?, &recording.header.world);
-    let mut sheet = Sheet::new(look, world.arena_m, &title(recording, number, &frame));
-    ground::draw_floor(&mut sheet);
-    let [corner, size] = sheet.map();
-    sheet.svg.begin_window(corner, size);
-    ground::draw_places(&mut sheet, world);
+    let mut sheet = ground::begun(look, world, &title(recording, number, &frame));
     let on = recording.zones_on(frame.step);
     ground::draw_zones(&mut sheet, &world.zones, |zone| on[zone], |_| false);
     ground::draw_debris(&mut sheet, &world.debris, &places(&frame), |_| false);
@@ -28,12 +23,8 @@ pub fn moment(recording: &Recording, number: usize, look: &Look) -> Result<Pictu
     team::draw_claims(&mut sheet, world, &frame);
     team::draw_robots(&mut sheet, world, &frame);
     team::draw_links(&mut sheet, &frame);
-    sheet.svg.end_window();
-    ground::draw_walls(&mut sheet);
-    let mut entries = team::moment_entries(world, sheet.unit);
-    let (debris, zones) = (world.debris.len(), world.zones.len());
-    entries.extend(ground::entries(world, sheet.unit, debris, zones, !world.rescuees.is_empty()));
-    Ok(sheet.finish(entries))
+    let entries = team::moment_entries(world, sheet.unit);
+    Ok(ground::finished(sheet, world, entries, [world.debris.len(), world.zones.len()]))
 }
 
 /// The poses of debris at a frame.

@@ -98,7 +98,6 @@ impl Pixels {
     /// assert_eq!((two.width, two.height), (2, 2));
     /// assert_eq!(two.rgba, [1, 1, 1, 255, 1, 1, 1, 255, 2, 2, 2, 255, 2, 2, 2, 255]);
     /// ```
-    #[must_use]
     pub fn beside(pictures: &[Self]) -> Option<Self> {
         let height = pictures.first()?.height;
         if pictures.iter().any(|one| one.height != height) {
@@ -130,13 +129,11 @@ impl Picture {
 
     /// A picture from a drawing that was made elsewhere. If its size is in millimetres, its PNG has `dpi`
     /// dots in an inch; a screen has 96. Its text is drawn with the embedded font.
-    #[must_use]
     pub fn of_svg(svg: String, dpi: f64) -> Self {
         Self { svg, zoom: dpi / 96.0 }
     }
 
     /// The picture as the text of an SVG file.
-    #[must_use]
     pub fn svg(&self) -> &str {
         &self.svg
     }

@@ -8,8 +8,8 @@ use crate::legend::{Entry, Sign};
 use crate::picture::{Look, Picture};
 use crate::shapes::shapes_of;
 use crate::sheet::Sheet;
-use crate::svg::{Anchor, Lettering, Num, Path};
-use crate::team::{self, colour_of, sign_radius};
+use crate::svg::{Num, Path};
+use crate::team::{self, colour_of, draw_number, sign_radius};
 use crate::theme::{INK, PAPER, SOFT};
 
 /// A world before the trial.
@@ -28,14 +28,9 @@ pub struct Plan<'w> {
 
 /// Draws a world before the trial: walls, debris, radiation, tasks, rest places, homes, sensing ranges and
 /// errands.
-#[must_use]
 pub fn plan(plan: &Plan, look: &Look) -> Picture {
     let Plan { world, first_sampled: [debris, zones], .. } = *plan;
-    let mut sheet = Sheet::new(look, world.arena_m, plan.title);
-    ground::draw_floor(&mut sheet);
-    let [corner, size] = sheet.map();
-    sheet.svg.begin_window(corner, size);
-    ground::draw_places(&mut sheet, world);
+    let mut sheet = ground::begun(look, world, plan.title);
     ground::draw_zones(&mut sheet, &world.zones, |_| true, |number| number >= zones);
     draw_ranges(&mut sheet, world);
     ground::draw_debris(&mut sheet, &world.debris, &ground::as_placed(&world.debris), |number| {
@@ -49,16 +44,13 @@ pub fn plan(plan: &Plan, look: &Look) -> Picture {
     draw_errands(&mut sheet, plan);
     draw_team(&mut sheet, world);
     ground::draw_names(&mut sheet, world);
-    sheet.svg.end_window();
-    ground::draw_walls(&mut sheet);
     let mut entries = team::entries(world);
     entries.retain(|entry| entry.means != "no group");
     entries.push(Entry::new(Sign::Disc(range_looks(sheet.unit)), "sensing range"));
     if !plan.errands.is_empty() {
         entries.push(Entry::new(Sign::Line(errand_looks(SOFT, sheet.unit)), "errands"));
     }
-    entries.extend(ground::entries(world, sheet.unit, debris, zones, !world.rescuees.is_empty()));
-    sheet.finish(entries)
+    ground::finished(sheet, world, entries, [debris, zones])
 }
 
 fn range_looks(unit: f64) -> String {
@@ -114,12 +106,7 @@ fn draw_team(sheet: &mut Sheet, world: &World) {
             format!("fill=\"{colour}\" stroke=\"{PAPER}\" stroke-width=\"{}\"", Num(0.7 * sheet.unit));
         sheet.svg.path(&sign, &looks);
         if has_numbers {
-            let place = [at[0] + radius + 3.0 * sheet.unit, at[1]];
-            sheet.svg.text(
-                &number.to_string(),
-                place,
-                &Lettering { size: 9.0 * sheet.unit, anchor: Anchor::Start, colour: INK },
-            );
+            draw_number(sheet, number, at, radius);
         }
     }
 }

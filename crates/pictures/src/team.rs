@@ -81,15 +81,16 @@ pub(crate) fn draw_robots(sheet: &mut Sheet, world: &World, frame: &Frame) {
             draw_levels(sheet, robot, at, radius);
         }
         if has_numbers {
-            let place = [at[0] + radius + 3.0 * sheet.unit, at[1]];
-            sheet.svg.text(
-                &number.to_string(),
-                place,
-                &Lettering { size: 9.0 * sheet.unit, anchor: Anchor::Start, colour: INK },
-            );
+            draw_number(sheet, number, at, radius);
         }
     }
     sheet.svg.path(&lost, &format!("stroke=\"{INK}\" stroke-width=\"{}\"", Num(1.8 * sheet.unit)));
+}
+
+/// Writes a robot's number beside it.
+pub(crate) fn draw_number(sheet: &mut Sheet, number: usize, [x, y]: At, radius: f64) {
+    let letters = Lettering { size: 9.0 * sheet.unit, anchor: Anchor::Start, colour: INK };
+    sheet.svg.text(&number.to_string(), [x + radius + 3.0 * sheet.unit, y], &letters);
 }
 
 /// Draws energy and HP as two bars below a robot, and the rescuees on board as dots above it.

@@ -33,11 +33,7 @@ pub fn trails(recording: &Recording, look: &Look) -> Result<Picture, PictureErro
     let world = &recording.header.world;
     let last = recording.frame(recording.frames().saturating_sub(1))?;
     let title = format!("{}: ways of all robots", name_of(recording));
-    let mut sheet = Sheet::new(look, world.arena_m, &title);
-    ground::draw_floor(&mut sheet);
-    let [corner, size] = sheet.map();
-    sheet.svg.begin_window(corner, size);
-    ground::draw_places(&mut sheet, world);
+    let mut sheet = ground::begun(look, world, &title);
     ground::draw_zones(&mut sheet, &world.zones, |_| true, |_| false);
     ground::draw_debris(&mut sheet, &world.debris, &places(&last), |_| false);
     ground::draw_rescuees(&mut sheet, world, |_| 0);
@@ -59,13 +55,9 @@ pub fn trails(recording: &Recording, look: &Look) -> Result<Picture, PictureErro
         shapes[world.robots[number].role].add(at, 2.6 * sheet.unit, &mut end);
         sheet.svg.path(&end, &end_looks(colour_of(world, number, robot.state.task), sheet.unit));
     }
-    sheet.svg.end_window();
-    ground::draw_walls(&mut sheet);
     let mut entries = team::entries(world);
     entries.push(Entry::new(Sign::Disc(end_looks(INK, sheet.unit)), "the end of a way"));
-    let (debris, zones) = (world.debris.len(), world.zones.len());
-    entries.extend(ground::entries(world, sheet.unit, debris, zones, !world.rescuees.is_empty()));
-    Ok(sheet.finish(entries))
+    Ok(ground::finished(sheet, world, entries, [world.debris.len(), world.zones.len()]))
 }
 
 fn end_looks(colour: &str, unit: f64) -> String {

@@ -219,13 +219,11 @@ impl Header {
     }
 
     /// The step of a frame.
-    #[must_use]
     pub fn step_of(&self, frame: usize) -> u64 {
         self.first_step + frame as u64 * self.steps_per_frame
     }
 
     /// The simulated time of a frame, in seconds.
-    #[must_use]
     pub fn time_s_of(&self, frame: usize) -> f64 {
         self.step_of(frame) as f64 * self.dt_s
     }
@@ -236,14 +234,12 @@ impl World {
     ///
     /// # Panics
     /// There is no such robot.
-    #[must_use]
     pub fn body_of(&self, robot: usize) -> &RoleFile {
         let RobotPlace { role, body, .. } = &self.robots[robot];
         body.as_ref().unwrap_or(&self.roles[*role])
     }
 
     /// The world of a trial.
-    #[must_use]
     pub fn of(simulation: &Simulation) -> Self {
         let (model, scenario, layout) = (simulation.model(), simulation.scenario(), simulation.layout());
         let task = |(task, model): (&usar_sim::scenario::TaskFile, &usar_sim::model::TaskModel)| TaskPlace {

@@ -9,7 +9,6 @@ use crate::header::World;
 impl World {
     /// The needs of a robot at a frame, in the order of the table of needs, with the precision of the
     /// recorded levels.
-    #[must_use]
     pub fn needs_of(&self, robot: usize, frame: &RobotFrame) -> Vec<f64> {
         let role = self.body_of(robot);
         let level = |millipercent: i32| f64::from(millipercent) / 1000.0;

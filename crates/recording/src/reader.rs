@@ -59,7 +59,6 @@ pub struct TimedDecision {
 
 impl TimedDecision {
     /// The members as they really were, by id.
-    #[must_use]
     pub fn team(&self) -> &[Member] {
         self.truth.as_ref().unwrap_or(&self.question.members)
     }
@@ -82,7 +81,6 @@ fn json<T: DeserializeOwned>(chunk: &Chunk, content: &[u8]) -> Result<T, ReadErr
 
 impl Recording {
     /// For each radiation zone, whether it is on at a step.
-    #[must_use]
     pub fn zones_on(&self, step: u64) -> Vec<bool> {
         let world = &self.header.world;
         let mut on: Vec<bool> =
@@ -163,7 +161,6 @@ impl Recording {
     }
 
     /// Number of frames.
-    #[must_use]
     pub fn frames(&self) -> usize {
         self.segments.last().map_or(0, |last| last.first_frame + last.frames)
     }
@@ -199,7 +196,6 @@ impl Recording {
 
     /// The number of the last frame at or before a simulated time in seconds. Times outside the recording
     /// give its first or its last frame.
-    #[must_use]
     pub fn frame_at(&self, time_s: f64) -> usize {
         let Header { dt_s, first_step, steps_per_frame, .. } = self.header;
         let steps = (time_s / dt_s + 1e-6).floor() - first_step as f64;

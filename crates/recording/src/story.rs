@@ -100,7 +100,6 @@ pub struct Story {
 
 impl Story {
     /// The story of a trial, if its team is small and it has errands.
-    #[must_use]
     pub fn of(simulation: &Simulation) -> Option<Self> {
         let is_small = simulation.world().robots.len() <= LARGEST_TEAM;
         (is_small && !simulation.scenario().errands.is_empty()).then(Self::default)
@@ -160,7 +159,6 @@ impl Story {
     }
 
     /// The sentences in the order of time, each as lines of at most 80 columns.
-    #[must_use]
     pub fn tell(&self) -> Vec<String> {
         let mut sentences: Vec<(f64, String)> = Vec::new();
         for ((a, b), meetings) in &self.meetings {

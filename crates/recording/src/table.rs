@@ -71,7 +71,6 @@ impl Table {
     pub const ALL: [Self; 4] = [Self::Robots, Self::Groups, Self::Events, Self::Decisions];
 
     /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Robots => "robots",
@@ -82,7 +81,6 @@ impl Table {
     }
 
     /// What a row is.
-    #[must_use]
     pub fn row_is(self) -> &'static str {
         match self {
             Self::Robots => "a robot in a frame",
@@ -93,7 +91,6 @@ impl Table {
     }
 
     /// Its columns in a world with these needs.
-    #[must_use]
     pub fn columns(self, needs: &[NeedFile]) -> Vec<About> {
         match self {
             Self::Robots => abouts(robots(needs)),

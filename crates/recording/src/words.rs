@@ -52,7 +52,6 @@ impl Names<'_> {
 
 impl ToldEvent {
     /// An event that had happened at the end of a step.
-    #[must_use]
     pub fn new(step: u64, dt_s: f64, event: &Event, names: Names) -> Self {
         let (name, fields) = match serde_json::to_value(event) {
             Ok(Value::Object(kinds)) => kinds.into_iter().next().unwrap_or_default(),
@@ -65,7 +64,6 @@ impl ToldEvent {
     }
 
     /// The ids of the robots that the event concerns.
-    #[must_use]
     pub fn robots(&self) -> Vec<u64> {
         let one = ["robot", "room_for", "resource_of"]
             .into_iter()
@@ -77,7 +75,6 @@ impl ToldEvent {
     }
 
     /// The value of a numeric field.
-    #[must_use]
     pub fn number(&self, field: &str) -> Option<u64> {
         self.fields.get(field)?.as_u64()
     }
@@ -95,7 +92,6 @@ fn snake(name: &str) -> String {
 }
 
 /// Robots by their ids, as in `robots 0, 1 and 4`.
-#[must_use]
 pub fn robots_in_words(robots: &[u32]) -> String {
     match robots {
         [] => "no robot".to_owned(),

@@ -36,7 +36,6 @@ pub struct Options {
 
 impl Options {
     /// Options with [`DEFAULT_FPS`].
-    #[must_use]
     pub fn new(policy: &str, measure: Option<MadeMeasure>) -> Self {
         Self { policy: policy.to_owned(), measure, fps: DEFAULT_FPS }
     }

@@ -16,7 +16,7 @@ use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
 use crate::figures::{Part, figures, is_quiet};
 use crate::maps::{Map, ShownTrial, trails_map, world_map};
-use crate::table::{between, moments};
+use crate::table::{between, moments, or_dash};
 use crate::wanted::Wanted;
 
 #[derive(Template)]
@@ -251,8 +251,8 @@ fn rows(comparisons: &[&Comparison]) -> Vec<Row> {
 }
 
 fn row(c: &Comparison) -> Row {
-    let number = |value: Option<f64>| value.map_or("-".to_owned(), short);
-    let mean = |value: Option<f64>| value.map_or("-".to_owned(), |value| digits(value, 4));
+    let number = |value: Option<f64>| or_dash(value, short);
+    let mean = |value: Option<f64>| or_dash(value, |value| digits(value, 4));
     let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
     Row {
         metric: if c.is_of_sums { format!("{} (ratio of sums)", c.metric) } else { c.metric.clone() },
@@ -262,12 +262,12 @@ fn row(c: &Comparison) -> Row {
         means: format!("{}, {}", mean(c.mean_a), mean(c.mean_b)),
         difference: number(c.difference),
         interval: between(c.interval),
-        p: c.p.map_or("-".to_owned(), short_p),
+        p: or_dash(c.p, short_p),
         verdict: c.verdict_in_words(),
-        p_holm: c.p_holm.map_or("-".to_owned(), short_p),
+        p_holm: or_dash(c.p_holm, short_p),
         detectable: number(c.detectable),
-        pairs: pairs.map_or("-".to_owned(), |pairs| pairs.to_string()),
-        pairing: c.pairing.map_or("-".to_owned(), |times| format!("{} x", digits(times, 2))),
+        pairs: or_dash(pairs, |pairs| pairs.to_string()),
+        pairing: or_dash(c.pairing, |times| format!("{} x", digits(times, 2))),
         is_found: c.verdict.is_shown(),
         is_first: false,
     }

@@ -39,7 +39,6 @@ pub struct Labels<'a> {
 }
 
 /// The chart of these series as SVG, with both axes from 0. Empty without a series.
-#[must_use]
 pub fn chart(labels: Labels, series: &[Series]) -> String {
     let plots: Vec<Plot> = series.iter().enumerate().map(|(i, series)| plot(i, series)).collect();
     if plots.is_empty() {

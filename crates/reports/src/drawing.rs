@@ -5,7 +5,7 @@ use std::sync::Arc;
 use experiments::Failure;
 use experiments::experiment::{Experiment, PolicySpec};
 use kuva::backend::svg::SvgBackend;
-use kuva::plot::{ColorMap, Heatmap, LinePlot, LineStyle};
+use kuva::plot::{ColorMap, ForestPlot, Heatmap, LinePlot, LineStyle};
 use kuva::render::figure::Figure as Panels;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
@@ -248,6 +248,18 @@ fn coloured(mut data: Vec<Vec<f64>>, most: f64, colour: fn(f64) -> String) -> Pl
     Plot::Heatmap(Heatmap::new().with_data(data).with_color_map(colours).with_values())
 }
 
+/// A plot of values with their intervals, a row for each, around zero.
+pub(crate) fn forest_plot() -> ForestPlot {
+    ForestPlot::new().with_null_value(0.0).with_cap_size(4.0)
+}
+
+/// The panel of such a plot, over this range.
+pub(crate) fn interval_panel(plot: ForestPlot, title: &str, label: &str, [low, high]: [f64; 2]) -> Panel {
+    let plots = vec![Plot::Forest(plot)];
+    let layout = layout(&plots, title).with_x_label(label).with_ticks(4);
+    Panel { metric: String::new(), plots, layout: layout.with_x_axis_min(low).with_x_axis_max(high) }
+}
+
 /// The names of a heat map's rows in kuva's order, if the first name is that of the top row.
 pub(crate) fn from_top(names: impl IntoIterator<Item = String>) -> Vec<String> {
     let mut names: Vec<String> = names.into_iter().collect();
@@ -310,6 +322,11 @@ impl Rows {
     pub fn finish(self) -> Result<String, Failure> {
         String::from_utf8(self.0.into_inner().map_err(Failure::run)?).map_err(Failure::run)
     }
+}
+
+/// The names of columns in the first line of a table.
+pub(crate) fn columns(header: &'static str) -> Vec<&'static str> {
+    header.split(',').collect()
 }
 
 /// A table from its header and rows.

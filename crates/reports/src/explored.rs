@@ -7,7 +7,7 @@ use experiments::explore::{CHANCE, Index, Outcome, Row};
 use statistics::sensitivity::Known;
 
 use crate::figures::sensitivity;
-use crate::table::{headed, right};
+use crate::table::{between, headed, right};
 
 /// The drawing of a study's indices, and the table of the numbers behind it.
 ///
@@ -19,7 +19,6 @@ pub fn sensitivity_figure(rows: &[Row]) -> Result<[Vec<u8>; 2], Failure> {
 }
 
 /// The indices of one outcome.
-#[must_use]
 pub fn sensitivity_table(rows: &[&Row]) -> Table {
     let is_of_effects = rows.iter().any(|row| matches!(row.index, Index::Effects { .. }));
     let mut table = if is_of_effects {
@@ -31,14 +30,14 @@ pub fn sensitivity_table(rows: &[&Row]) -> Table {
         let mut cells = vec![Cell::new(&row.parameter)];
         let mut add = |known: Known| {
             cells.push(right(&short(known.value)));
-            cells.push(right(&interval(known.interval)));
+            cells.push(right(&between(known.interval)));
         };
         match row.index {
             Index::Effects { effects, beyond } => {
                 add(effects.size);
                 add(effects.mean);
                 cells.push(right(&short(effects.spread.value)));
-                cells.push(right(&interval(beyond.and_then(|beyond| beyond.interval))));
+                cells.push(right(&between(beyond.and_then(|beyond| beyond.interval))));
             }
             Index::Shares(shares) => {
                 add(shares.first);
@@ -54,15 +53,10 @@ pub fn sensitivity_table(rows: &[&Row]) -> Table {
     table
 }
 
-fn interval(interval: Option<[f64; 2]>) -> String {
-    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
-}
-
 /// Most parameters whose effects a sentence tells; the others are named.
 const MOST_IN_WORDS: usize = 3;
 
 /// The ranking of one outcome's parameters in words, the largest first.
-#[must_use]
 pub fn ranking(outcome: &Outcome, rows: &[&Row]) -> String {
     let place = format!("{}, {}", outcome.what, outcome.who);
     if rows.is_empty() {

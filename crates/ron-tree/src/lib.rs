@@ -6,6 +6,7 @@ pub mod file;
 mod layout;
 pub mod limits;
 mod malformed;
+mod named;
 mod nearest;
 mod node;
 mod parse;

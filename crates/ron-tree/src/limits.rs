@@ -17,19 +17,16 @@ pub struct Limit {
 
 impl Limit {
     /// The range from the least to the greatest value.
-    #[must_use]
     pub fn range(&self) -> RangeInclusive<f64> {
         self.least..=self.most
     }
 
     /// The greatest value of a count.
-    #[must_use]
     pub const fn count(&self) -> usize {
         self.most as usize
     }
 
     /// Whether a count is within the limit.
-    #[must_use]
     pub fn allows(&self, count: usize) -> bool {
         (self.least as usize..=self.count()).contains(&count)
     }

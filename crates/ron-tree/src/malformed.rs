@@ -19,7 +19,6 @@ pub struct Malformed {
 
 impl Malformed {
     /// The error at this byte of a text.
-    #[must_use]
     pub fn new(text: &str, at: usize, message: String) -> Self {
         let before = text.get(..at).unwrap_or(text);
         let line = 1 + before.matches('\n').count();

@@ -6,7 +6,6 @@ const MOST_CHARS: usize = 64;
 /// The nearest of these words to a mistyped word, if it is near enough. Near enough is at most a third of
 /// the characters, or two (one, for words with fewer than four characters), added, left out, changed, or
 /// swapped with the next, regardless of the case of ASCII letters. Of equally near words, the first.
-#[must_use]
 pub fn nearest<'w>(word: &str, words: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
     let start = |word: &str| word.chars().take(MOST_CHARS).collect::<String>().to_ascii_lowercase();
     let typed = start(word);

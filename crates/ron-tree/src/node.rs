@@ -52,13 +52,11 @@ impl From<Value> for Node {
 
 impl Node {
     /// A node with a number or a name, from no text.
-    #[must_use]
     pub fn word(word: impl Into<Box<str>>) -> Self {
         Value::Word(word.into()).into()
     }
 
     /// The word, if the node is one.
-    #[must_use]
     pub fn as_word(&self) -> Option<&str> {
         match &self.value {
             Value::Word(word) => Some(word),
@@ -67,7 +65,6 @@ impl Node {
     }
 
     /// The text, if the node is one.
-    #[must_use]
     pub fn as_text(&self) -> Option<&str> {
         match &self.value {
             Value::Text(text) => Some(text),
@@ -76,7 +73,6 @@ impl Node {
     }
 
     /// The fields of a struct or a map.
-    #[must_use]
     pub fn fields(&self) -> &[(Self, Self)] {
         match &self.value {
             Value::Struct(_, fields) | Value::Map(fields) => fields,
@@ -85,7 +81,6 @@ impl Node {
     }
 
     /// The entries of a list or a tuple.
-    #[must_use]
     pub fn entries(&self) -> &[Self] {
         match &self.value {
             Value::List(entries) | Value::Tuple(_, entries) => entries,
@@ -94,7 +89,6 @@ impl Node {
     }
 
     /// The node inside `Some(...)`; the node itself, if it is not in `Some`.
-    #[must_use]
     pub fn peeled(&self) -> &Self {
         match &self.value {
             Value::Tuple(name, entries) if entries.len() == 1 && &**name == "Some" => entries[0].peeled(),
@@ -172,7 +166,6 @@ impl Node {
     }
 
     /// The bytes of the text that the node takes.
-    #[must_use]
     pub fn bytes(&self) -> std::ops::Range<usize> {
         self.place.start as usize..self.place.end as usize
     }

@@ -20,7 +20,6 @@ struct Trail<'n> {
 
 impl Node {
     /// The node of a path. It may stand in `Some(...)`.
-    #[must_use]
     pub fn get(&self, path: &str) -> Option<&Self> {
         let trail = self.trail(path);
         trail.nodes.last().filter(|_| trail.is_whole).map(|(node, _)| *node)
@@ -35,7 +34,6 @@ impl Node {
 
     /// The path with indices instead of names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`. The part that does
     /// not exist stays as it is.
-    #[must_use]
     pub fn canonical(&self, path: &str) -> String {
         let trail = self.trail(path);
         let steps = trail.nodes.iter().zip(&trail.positions);
@@ -46,7 +44,6 @@ impl Node {
 
     /// Line of a field; if it does not exist, that of the nearest enclosing field. `None` if that is the
     /// whole text, or comes from no text.
-    #[must_use]
     pub fn line(&self, path: &str) -> Option<usize> {
         let nodes = self.trail(path).nodes;
         let line = nodes.get(1..)?.last()?.0.place.line as usize;
@@ -54,13 +51,11 @@ impl Node {
     }
 
     /// Names of the fields directly in the node.
-    #[must_use]
     pub fn names(&self) -> Vec<String> {
         self.peeled().fields().iter().map(|(name, _)| name.to_string()).collect()
     }
 
     /// The nodes without nodes of their own, each with its path.
-    #[must_use]
     pub fn leaves(&self) -> Vec<(String, &Self)> {
         let mut leaves = Vec::new();
         self.collect_leaves(String::new(), &mut leaves);
@@ -121,7 +116,6 @@ impl Node {
     }
 
     /// The problem of a path that does not exist. `what` describes the whole tree, for example `the file`.
-    #[must_use]
     pub fn unknown(&self, path: &str, what: &str) -> Box<Problem> {
         let nodes = self.trail(path).nodes;
         let told = nodes.iter().rev().find_map(|(node, end)| Some((*node, *end, node.peeled().known()?)));

@@ -4,7 +4,6 @@ use std::borrow::Cow;
 
 /// Whether a character acts instead of being seen: it would control a terminal, or change the direction in
 /// which text is read.
-#[must_use]
 pub fn is_unseen(c: char) -> bool {
     let turns = matches!(
         c,
@@ -18,7 +17,6 @@ pub fn is_unseen(c: char) -> bool {
 /// ```
 /// assert_eq!(ron_tree::visible("ma\u{202e}nor"), "ma\\u{202e}nor");
 /// ```
-#[must_use]
 pub fn visible(text: &str) -> Cow<'_, str> {
     if !text.contains(is_unseen) {
         return Cow::Borrowed(text);
@@ -49,7 +47,6 @@ fn number(word: &str) -> Option<&'static str> {
 /// let plain = "invalid type: integer `1`, expected an object at line 1 column 1";
 /// assert_eq!(ron_tree::without_types(&message), plain);
 /// ```
-#[must_use]
 pub fn without_types(message: &impl ToString) -> String {
     let message = message.to_string();
     let mut plain: Vec<&str> = Vec::new();

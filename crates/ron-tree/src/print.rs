@@ -19,7 +19,6 @@ impl Display for Node {
 
 impl Node {
     /// The text with the entries of the outermost two brackets on lines of their own.
-    #[must_use]
     pub fn pretty(&self) -> String {
         let mut out = String::new();
         // A `String` takes all that is written.

@@ -43,14 +43,12 @@ impl fmt::Display for Problem {
 
 impl Problem {
     /// A broken rule, with the value as it is.
-    #[must_use]
     pub fn new(field: impl Into<String>, rule: impl Into<String>, found: impl fmt::Display) -> Self {
         let (field, rule, found) = (field.into(), rule.into(), shown(&found.to_string()));
         Self { field, rule, found, ..Self::default() }
     }
 
     /// The same, with a hint.
-    #[must_use]
     pub(crate) fn with_hint(self, hint: impl Into<String>) -> Self {
         Self { hint: hint.into(), ..self }
     }

@@ -11,7 +11,6 @@ const MOST_PROBLEMS: usize = 20;
 impl Node {
     /// Reads a type. Fields that do not fit are left out and reported. No value is returned if such a field
     /// has no default.
-    #[must_use]
     pub fn read_all<T: DeserializeOwned>(&self) -> (Option<T>, Vec<Problem>) {
         let problem = match self.read_as() {
             Ok(value) => return (Some(value), Vec::new()),

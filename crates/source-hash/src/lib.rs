@@ -8,7 +8,6 @@ use proc_macro2::{Delimiter, Spacing, TokenStream, TokenTree};
 
 /// A hash of files, and of the files in folders: of their paths below `root`, and of their contents. The
 /// files of `#[cfg(test)]` modules are left out.
-#[must_use]
 pub fn hash(root: &Path, places: &[PathBuf]) -> u64 {
     let mut files = Vec::new();
     places.iter().for_each(|place| collect(place, &mut files));

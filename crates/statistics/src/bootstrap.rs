@@ -27,7 +27,6 @@ const SEED: u64 = 1;
 
 /// Resamples for this many pairs: 100,000 up to 20 pairs, then fewer, 10,000 from 200 to 2,000 pairs, and
 /// beyond that down to 2,000.
-#[must_use]
 pub fn resamples(pairs: usize) -> usize {
     let pairs = pairs.max(1);
     let of_few = (DRAWS_OF_FEW / pairs).min(RESAMPLES_OF_FEW);
@@ -36,7 +35,6 @@ pub fn resamples(pairs: usize) -> usize {
 
 /// The interval of the mean at this confidence, as used for all results: bias-corrected and accelerated,
 /// widened for small samples. `None` for fewer than two values.
-#[must_use]
 pub fn interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
     bca_interval(values, confidence, resamples(values.len()), SEED, Width::Expanded)
 }
@@ -52,7 +50,6 @@ pub enum Width {
 
 /// The interval of the mean at this confidence, from draws with this seed. `None` for fewer than two
 /// values. If all values are equal, both ends are that value.
-#[must_use]
 pub fn bca_interval(
     values: &[f64],
     confidence: f64,
@@ -83,13 +80,11 @@ pub fn bca_interval(
 /// The interval of a ratio of sums at this confidence, from pairs of summands: bias-corrected and
 /// accelerated, widened for small samples. Single pairs whose own ratio is extreme do not dominate a ratio
 /// of sums. `None` for fewer than two pairs, or if some resample has no ratio.
-#[must_use]
 pub fn ratio_interval(pairs: &[[f64; 2]], confidence: f64) -> Option<[f64; 2]> {
     bca_ratio_interval(pairs, confidence, resamples(pairs.len()), SEED)
 }
 
 /// The same as [`ratio_interval`], with this number of resamples and this seed.
-#[must_use]
 pub fn bca_ratio_interval(
     pairs: &[[f64; 2]],
     confidence: f64,
@@ -124,7 +119,6 @@ const RESAMPLES_OF_ANY: usize = 4_000;
 /// The interval of any statistic of `count` independent observations at this confidence: bias-corrected and
 /// accelerated, widened for small samples. The statistic receives the places of the observations to use.
 /// `None` for fewer than two observations, or if a resample has no value.
-#[must_use]
 pub fn statistic_interval(
     count: usize,
     confidence: f64,
@@ -197,7 +191,6 @@ fn acceleration(values: &[f64], mean: f64) -> f64 {
 }
 
 /// Quantile of sorted values, interpolated linearly (type 7 of Hyndman & Fan 1996).
-#[must_use]
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
     let below = place.floor() as usize;

@@ -32,7 +32,6 @@ pub struct Breakdown {
 impl Breakdown {
     /// From the differences between a policy and a draw, a row of pairs in the same order of seeds for each
     /// number of liars from 0 on. A difference within `margin` is none.
-    #[must_use]
     pub fn of(differences: &[Vec<f64>], margin: f64, confidence: f64) -> Self {
         let intervals = simultaneous(differences, confidence);
         let is_better = |interval: &Option<[f64; 2]>| interval.is_some_and(|[low, _]| low > 0.0);
@@ -51,7 +50,6 @@ impl Breakdown {
 ///
 /// # Panics
 /// The rows have different lengths.
-#[must_use]
 pub fn simultaneous(rows: &[Vec<f64>], confidence: f64) -> Vec<Option<[f64; 2]>> {
     let count = rows.first().map_or(0, Vec::len);
     assert!(rows.iter().all(|row| row.len() == count), "rows of pairs have one length");

@@ -23,14 +23,12 @@ const ERROR_OF_LEAST: f64 = 1.0 / 400.0;
 const SKEWNESS_ERRORS: f64 = 3.0;
 
 /// How many values must differ from the commonest one for an interval at this confidence.
-#[must_use]
 pub fn least_others(confidence: f64) -> usize {
     let error = 1.0 - confidence;
     (LEAST_OTHERS * (ERROR_OF_LEAST / error).sqrt().max(1.0)).round() as usize
 }
 
 /// How many of the values differ from the commonest one.
-#[must_use]
 pub fn others(values: &[f64]) -> usize {
     let mut counts: HashMap<u64, usize> = HashMap::new();
     // Adding 0 makes a 0 of -0.
@@ -39,7 +37,6 @@ pub fn others(values: &[f64]) -> usize {
 }
 
 /// The interval of the mean at this confidence. `None` if too few values differ from the commonest one.
-#[must_use]
 pub fn interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
     if others(values) < least_others(confidence) {
         return None;

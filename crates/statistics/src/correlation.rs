@@ -7,7 +7,6 @@ use statrs::statistics::{Data, OrderStatistics, RankTieBreaker, Statistics};
 ///
 /// # Panics
 /// Never, if both lists have the same length.
-#[must_use]
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     let ranks = |values: &[f64]| Data::new(values.to_vec()).ranks(RankTieBreaker::Average);
     let (a, b) = (ranks(a), ranks(b));

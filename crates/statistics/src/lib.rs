@@ -32,7 +32,6 @@ pub struct Moments {
 
 impl Moments {
     /// The moments of these values.
-    #[must_use]
     pub fn of(values: &[f64]) -> Self {
         Self {
             count: values.len(),

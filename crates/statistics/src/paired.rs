@@ -12,7 +12,6 @@ const LISTED: usize = 1_000;
 
 /// Hodges-Lehmann shift: the median of the means of all pairs of differences, including each difference
 /// with itself (Hodges & Lehmann 1963). `None` without differences.
-#[must_use]
 pub fn hodges_lehmann(differences: &[f64]) -> Option<f64> {
     if differences.len() > LISTED {
         return Some(closed_in(differences));
@@ -55,7 +54,6 @@ fn closed_in(differences: &[f64]) -> f64 {
 
 /// Holm's correction (1979) of the p values of a family, in the given order. It keeps the probability of
 /// any false finding below the level.
-#[must_use]
 pub fn holm(ps: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..ps.len()).collect();
     order.sort_by(|a, b| ps[*a].total_cmp(&ps[*b]));
@@ -71,7 +69,6 @@ pub fn holm(ps: &[f64]) -> Vec<f64> {
 /// Number of pairs that a two-sided paired t test at 5 % needs for 80 % power, if the true effect is the
 /// observed one: Guenther's approximation to the noncentral t (1981). `None` if the observed mean or
 /// standard deviation is zero.
-#[must_use]
 pub fn pairs_needed(differences: &[f64]) -> Option<u64> {
     let Moments { mean, sd, .. } = Moments::of(differences);
     let effect = (mean? / sd.filter(|sd| *sd > 0.0)?).abs();
@@ -88,7 +85,6 @@ pub const FEWEST_PAIRS: usize = 6;
 /// 80 % power, if the differences have this standard deviation (Guenther's approximation to the noncentral
 /// t, 1981, solved for the difference). It depends on the standard deviation of the differences, not on
 /// their mean. `None` for fewer than [`FEWEST_PAIRS`], or without any spread.
-#[must_use]
 pub fn detectable(sd: f64, pairs: usize) -> Option<f64> {
     let normal = Normal::standard();
     let (level, power) = (normal.inverse_cdf(0.975), normal.inverse_cdf(0.8));
@@ -100,7 +96,6 @@ pub fn detectable(sd: f64, pairs: usize) -> Option<f64> {
 /// two-sided paired t test at 5 %, and equal policies are shown to be equivalent with 80 % power by two
 /// one-sided tests at 5 %. A true difference near the margin may stay undecided, whatever the number. It
 /// depends on the standard deviation of the differences, not on their mean. `None` without any spread.
-#[must_use]
 pub fn pairs_for_margin(differences: &[f64], margin: f64) -> Option<u64> {
     let sd = Moments::of(differences).sd.filter(|sd| *sd > 0.0)?;
     let normal = Normal::standard();
@@ -114,13 +109,11 @@ pub fn pairs_for_margin(differences: &[f64], margin: f64) -> Option<u64> {
 }
 
 /// Half the width of the 95 % paired t interval; `None` for fewer than two differences.
-#[must_use]
 pub fn t_half_width(differences: &[f64]) -> Option<f64> {
     t_half_width_at(differences, 0.95)
 }
 
 /// The same as [`t_half_width`], at another confidence.
-#[must_use]
 pub fn t_half_width_at(differences: &[f64], confidence: f64) -> Option<f64> {
     let count = differences.len() as f64;
     let sd = Moments::of(differences).sd?;

@@ -24,7 +24,6 @@ const LEAST_PROBABILITY: f64 = 1e-12;
 
 /// The continuous ranked probability score of a normal forecast (Gneiting and Raftery 2007, eq. 21), in the
 /// unit of the value; the absolute error where `sd` is 0. Lower is better.
-#[must_use]
 pub fn crps(mean: f64, sd: f64, value: f64) -> f64 {
     if sd <= 0.0 {
         return (value - mean).abs();
@@ -35,7 +34,6 @@ pub fn crps(mean: f64, sd: f64, value: f64) -> f64 {
 
 /// Kendall's rank correlation with ties (tau-b, Kendall 1945), from -1 to 1; `None` if either side has one
 /// value only.
-#[must_use]
 pub fn tau_b(x: &[f64], y: &[f64]) -> Option<f64> {
     let sign = |a: f64, b: f64| match a.total_cmp(&b) {
         Ordering::Less => -1,
@@ -57,7 +55,6 @@ pub fn tau_b(x: &[f64], y: &[f64]) -> Option<f64> {
 
 /// The area under the receiver operating characteristic: how often a forecast of something that was so is
 /// higher than one of something that was not, ties by half (Mann and Whitney). `None` if one kind is missing.
-#[must_use]
 pub fn area_under_curve(forecasts: &[Forecast]) -> Option<f64> {
     let of = |was_so: bool| forecasts.iter().filter(move |it| it.was_so == was_so).map(|it| it.probability);
     let pairs = of(true).count() * of(false).count();
@@ -72,13 +69,11 @@ pub fn area_under_curve(forecasts: &[Forecast]) -> Option<f64> {
 }
 
 /// The mean squared error of probabilities (Brier 1950). Lower is better.
-#[must_use]
 pub fn brier(forecasts: &[Forecast]) -> Option<f64> {
     mean(forecasts, |it| (it.probability - f64::from(it.was_so)).powi(2))
 }
 
 /// The mean logarithmic score (Good 1952), in nats. Lower is better.
-#[must_use]
 pub fn log_score(forecasts: &[Forecast]) -> Option<f64> {
     mean(forecasts, |it| {
         let of_what_was = if it.was_so { it.probability } else { 1.0 - it.probability };
@@ -88,7 +83,6 @@ pub fn log_score(forecasts: &[Forecast]) -> Option<f64> {
 
 /// The expected calibration error in ten bins of equal width (Naeini et al. 2015): how far the mean
 /// probability in a bin is from the share that was so. Lower is better.
-#[must_use]
 pub fn calibration_error(forecasts: &[Forecast]) -> Option<f64> {
     let mut bins = [[0.0; 2]; BINS];
     for it in forecasts {

@@ -33,7 +33,6 @@ pub struct Effects {
 }
 
 /// The summary of a parameter's elementary effects, one from each block; `None` without any.
-#[must_use]
 pub fn effects(effects: &[f64]) -> Option<Effects> {
     let sizes: Vec<f64> = effects.iter().map(|effect| effect.abs()).collect();
     let spread = |rows: &[usize]| Moments::of(&rows.iter().map(|row| effects[*row]).collect::<Vec<_>>()).sd;
@@ -97,7 +96,6 @@ fn total_order(blocks: &[Block], parameter: usize, rows: &[usize]) -> Option<f64
 }
 
 /// The shares of one parameter, by its place; `None` for fewer than two blocks or a constant function.
-#[must_use]
 pub fn shares(blocks: &[Block], parameter: usize) -> Option<Shares> {
     let first = known(blocks, |rows| first_order(blocks, parameter, rows))?;
     let total = known(blocks, |rows| total_order(blocks, parameter, rows))?;
@@ -106,7 +104,6 @@ pub fn shares(blocks: &[Block], parameter: usize) -> Option<Shares> {
 
 /// The share of the variance that both points of a block have in common. Its source is what the block's
 /// evaluations share besides parameters, such as the seeds of their trials.
-#[must_use]
 pub fn common_share(blocks: &[Block]) -> Option<Known> {
     known(blocks, |rows| {
         let (mean, variance) = moments(blocks, rows)?;

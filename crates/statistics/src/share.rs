@@ -3,7 +3,6 @@
 use statrs::distribution::{Beta, ContinuousCDF};
 
 /// The exact interval of a share (Clopper and Pearson 1934); `None` without any trial.
-#[must_use]
 pub fn clopper_pearson(held: usize, n: usize, confidence: f64) -> Option<[f64; 2]> {
     let tail = (1.0 - confidence) / 2.0;
     let (k, n) = (held as f64, n as f64);

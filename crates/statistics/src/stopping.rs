@@ -5,7 +5,6 @@
 pub const FIRST_LOOK: u32 = 20;
 
 /// Pairs at the look after this one: a quarter more.
-#[must_use]
 pub fn next_look(pairs: u32) -> u32 {
     pairs.saturating_add(pairs.div_ceil(4))
 }

@@ -37,7 +37,6 @@ pub struct SignedRank {
 
 impl SignedRank {
     /// The test of these differences, which must be finite.
-    #[must_use]
     pub fn of(differences: &[f64]) -> Self {
         let mut nonzero: Vec<f64> = rounded(differences).filter(|d| *d != 0.0).collect();
         nonzero.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
@@ -65,7 +64,6 @@ impl SignedRank {
 
     /// Matched-pairs rank-biserial correlation, from -1 to 1: the share of the rank sum of positive
     /// differences minus the share of negative ones (Kerby 2014). 0 without any difference.
-    #[must_use]
     pub fn effect(&self) -> f64 {
         let total = self.positive + self.negative;
         if total > 0.0 { (self.positive - self.negative) / total } else { 0.0 }

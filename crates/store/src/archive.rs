@@ -93,7 +93,6 @@ impl Archive {
     }
 
     /// Number of lines.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.lines
     }

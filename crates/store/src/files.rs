@@ -31,7 +31,6 @@ pub struct FileHash {
 
 impl FileHash {
     /// The hash of a file with these bytes.
-    #[must_use]
     pub fn of(name: &str, content: &[u8]) -> Self {
         Self { name: name.to_owned(), xxh3_128: format!("{:032x}", xxh3_128(content)) }
     }

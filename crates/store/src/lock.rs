@@ -310,7 +310,6 @@ fn beside(path: &Path, what: &str) -> PathBuf {
 }
 
 /// Whether a file is a lock, or a temporary file of a process that examined a lock.
-#[must_use]
 pub fn is_lock(name: &str) -> bool {
     name.strip_prefix(LOCK).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }

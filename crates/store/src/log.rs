@@ -35,13 +35,11 @@ pub struct Header {
 
 impl Header {
     /// The header of a job of this kind. `decides` is everything that decides its entries.
-    #[must_use]
     pub fn new(kind: &str, decides: &str) -> Self {
         Self { kind: kind.to_owned(), fingerprint: format!("{:016x}", xxh3_64(decides.as_bytes())) }
     }
 
     /// The header as a line.
-    #[must_use]
     pub fn line(&self) -> Vec<u8> {
         let text = format!("{{\"kind\":{:?},\"fingerprint\":{:?}}}", self.kind, self.fingerprint);
         with_checksum(HEADER, &text)
@@ -123,7 +121,6 @@ pub fn checked(entry: &impl Serialize) -> Result<Vec<u8>, Failure> {
 }
 
 /// The entry of a line, if its checksum matches.
-#[must_use]
 pub fn entry_of(line: &[u8]) -> Option<&[u8]> {
     sound(line, ENTRY)
 }

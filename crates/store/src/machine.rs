@@ -5,20 +5,17 @@ use std::path::Path;
 use sysinfo::{DiskRefreshKind, Disks, Pid, ProcessesToUpdate, System};
 
 /// The name of this machine.
-#[must_use]
 pub fn name() -> String {
     System::host_name().unwrap_or_else(|_| "unknown".to_owned())
 }
 
 /// The job of this process, in Slurm's notation: `42_3` is the third task of the array 42.
-#[must_use]
 pub fn job() -> Option<String> {
     let task = variable("SLURM_ARRAY_JOB_ID").zip(variable("SLURM_ARRAY_TASK_ID"));
     task.map(|(array, task)| format!("{array}_{task}")).or_else(|| variable("SLURM_JOB_ID"))
 }
 
 /// Bytes that are free for a user on the file system of an existing folder; `None` if unknown.
-#[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let folder = folder.canonicalize().ok()?;
     let disks = Disks::new_with_refreshed_list_specifics(DiskRefreshKind::nothing().with_storage()).ok()?;
@@ -33,7 +30,6 @@ pub(crate) fn variable(name: &str) -> Option<String> {
 }
 
 /// The time of day in UTC, to the second.
-#[must_use]
 pub fn now() -> String {
     let now = jiff::Timestamp::now();
     now.round(jiff::Unit::Second).unwrap_or(now).to_string()

@@ -27,7 +27,6 @@ pub struct Section {
 }
 
 /// All sections, the verdicts last.
-#[must_use]
 pub fn sections(
     judged: &[Judged],
     examples: &[Example],

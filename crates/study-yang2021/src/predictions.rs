@@ -83,7 +83,6 @@ fn of_values(values: &[f64]) -> Option<[f64; 4]> {
 /// The predictions of all calibrated worlds together: the mean of their means, the root mean square of
 /// their standard deviations, and an interval that holds all their intervals. Empty if there is only one
 /// such world.
-#[must_use]
 pub(crate) fn over_worlds(worlds: &[(Standing, Vec<Prediction>)]) -> Vec<Prediction> {
     let calibrated: Vec<&Vec<Prediction>> = worlds
         .iter()

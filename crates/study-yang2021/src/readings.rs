@@ -14,7 +14,6 @@ use statistics::paired::t_half_width_at;
 
 /// The metrics whose differences are shown: rescuees, of all tasks and of each task, and energy per
 /// rescuee.
-#[must_use]
 pub fn shown(metrics: &Catalogue) -> Vec<usize> {
     let energy = metrics.named("energy_per_rescuee.total").ok();
     metrics.declared("rescuees").into_iter().chain(energy).collect()
@@ -42,7 +41,6 @@ impl Difference {
     }
 
     /// The side of zero on which the whole interval lies: 1, -1, or 0 for neither.
-    #[must_use]
     pub fn side(&self) -> i32 {
         if self.mean - self.half > 0.0 { 1 } else { -i32::from(self.mean + self.half < 0.0) }
     }
@@ -87,7 +85,6 @@ pub struct Trials<'f> {
 
 impl<'f> Trials<'f> {
     /// The trials of a sweep without axes.
-    #[must_use]
     pub fn of(folder: &'f Folder) -> Self {
         let policies = folder.experiment().policies.len();
         let has = |policy: usize, trial: u32| {
@@ -122,7 +119,6 @@ impl<'f> Trials<'f> {
     }
 
     /// The readings, without any reading whose trials equal those of an earlier one.
-    #[must_use]
     pub fn distinct(&self, readings: &[usize]) -> Vec<usize> {
         let mut distinct: Vec<usize> = Vec::new();
         for reading in readings {
@@ -175,7 +171,6 @@ fn regrouped(folder: &Folder, reading: usize, rounds: &[Round]) -> Result<[f64; 
 
 /// For each option and value other than the default: the difference to the same combination with the
 /// default, trial by trial, averaged over all combinations of the other options.
-#[must_use]
 pub fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<Difference>>)> {
     let (policies, shown) = (trials.policies(), shown(trials.catalogue()));
     let mut values: Vec<(String, String)> = Vec::new();
@@ -217,7 +212,6 @@ pub fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<
 type Sides = Vec<[i32; 2]>;
 
 /// Readings compared with each policy that is not a reading, and with all of these policies at once.
-#[must_use]
 pub fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
     let policies = trials.policies();
     let rivals: Vec<usize> = (0..policies.len()).filter(|i| policies[*i].name != "RNE").collect();

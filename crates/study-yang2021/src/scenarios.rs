@@ -43,13 +43,11 @@ pub enum Standing {
 
 impl Standing {
     /// Whether the world is one of those that the recorded trials leave possible.
-    #[must_use]
     pub fn is_in_ensemble(self) -> bool {
         matches!(self, Self::Calibrated | Self::Alternative)
     }
 
     /// Whether the world is shown by itself; of the others, only verdicts and ranges are.
-    #[must_use]
     pub fn is_main(self) -> bool {
         matches!(self, Self::Printed | Self::Calibrated)
     }
@@ -96,7 +94,6 @@ fn overrides(trials: u32, set: Vec<String>) -> Overrides {
 }
 
 /// The largest differences that do not matter, by metric, as the paper's sweep file declares them.
-#[must_use]
 pub fn margins() -> Vec<(String, f64)> {
     let margin =
         |(key, value): &(Node, Node)| Some((key.as_text()?.to_owned(), value.as_word()?.parse().ok()?));

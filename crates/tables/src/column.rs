@@ -17,7 +17,6 @@ pub enum Kind {
 
 impl Kind {
     /// Its name in JSON schemas and data packages.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Natural => "integer",
@@ -82,7 +81,6 @@ macro_rules! columns {
 }
 
 /// What a table says of its columns.
-#[must_use]
 pub fn abouts<R>(columns: Columns<R>) -> Vec<About> {
     columns.into_iter().map(|column| column.about).collect()
 }
@@ -105,13 +103,11 @@ pub enum Cell {
 
 impl Cell {
     /// A number in the fewest digits that read back exactly, without `.0` at the end.
-    #[must_use]
     pub fn short(value: impl Into<Option<f64>>) -> Self {
         value.into().map_or(Self::Empty(None), |value| Self::Text(value.to_string()))
     }
 
     /// A value that was measured.
-    #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Natural(value) => Some(*value as f64),

@@ -5,7 +5,6 @@ use std::fmt::Write;
 use crate::column::About;
 
 /// The section of a page in Markdown about a table: its file, what a row is, and its columns.
-#[must_use]
 pub fn section(file: &str, row: &str, columns: &[About]) -> String {
     let mut text = format!(
         "\n## {file}\n\nA row is {row}.\n\n| column | type | unit | meaning |\n| --- | --- | --- | --- |\n"

@@ -17,49 +17,29 @@ pub enum TurnBackCause {
     Hp,
 }
 
-/// Why a group went home.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum ReturnCause {
-    /// No member in the field has room left.
-    CapacityUsed,
-    /// No member in the field has a resource left.
-    ResourcesUsed,
-    /// All members searched the whole area and know of nobody who is left, or know no way there.
-    NothingLeft,
-    /// No robot that can carry is left in the field.
-    NobodyCanCarry,
-}
-
-impl ReturnCause {
-    /// The cause in words.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::CapacityUsed => "capacity used",
-            Self::ResourcesUsed => "resources used",
-            Self::NothingLeft => "nothing left",
-            Self::NobodyCanCarry => "nobody can carry",
-        }
+ron_tree::named! {
+    /// Why a group went home.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+    pub enum ReturnCause {
+        /// No member in the field has room left.
+        CapacityUsed = "capacity used",
+        /// No member in the field has a resource left.
+        ResourcesUsed = "resources used",
+        /// All members searched the whole area and know of nobody who is left, or know no way there.
+        NothingLeft = "nothing left",
+        /// No robot that can carry is left in the field.
+        NobodyCanCarry = "nobody can carry",
     }
 }
 
-/// Why the team no longer waits for a robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum CutOffCause {
-    /// It knows no way to the place.
-    NoWay,
-    /// It came no nearer for `mission.cut_off_s`.
-    NoProgress,
-}
-
-impl CutOffCause {
-    /// The cause in words.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::NoWay => "knows no way",
-            Self::NoProgress => "comes no nearer",
-        }
+ron_tree::named! {
+    /// Why the team no longer waits for a robot.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+    pub enum CutOffCause {
+        /// It knows no way to the place.
+        NoWay = "knows no way",
+        /// It came no nearer for `mission.cut_off_s`.
+        NoProgress = "comes no nearer",
     }
 }
 
@@ -349,7 +329,6 @@ impl Event {
 }
 
 /// The JSON Schema of an event.
-#[must_use]
 pub fn event_schema() -> serde_json::Value {
     schemars::schema_for!(Event).into()
 }
@@ -373,7 +352,6 @@ impl EventLog {
     }
 
     /// The events since the last [`EventLog::clear`].
-    #[must_use]
     pub fn events(&self) -> &[Event] {
         &self.events
     }

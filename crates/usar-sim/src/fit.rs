@@ -33,7 +33,6 @@ type Fits = Result<(), Box<Problem>>;
 /// assert!(usar_sim::fit::is_result(-3.5));
 /// assert!(!usar_sim::fit::is_result(1e300) && !usar_sim::fit::is_result(f64::NAN));
 /// ```
-#[must_use]
 pub fn is_result(value: f64) -> bool {
     value.abs() < MOST
 }
@@ -68,7 +67,6 @@ fn results<const N: usize>(values: [(&str, f64); N]) -> Fits {
 
 impl<'a> Tables<'a> {
     /// The tables of a scenario.
-    #[must_use]
     pub fn of(scenario: &'a Scenario) -> Self {
         Self {
             tasks: scenario.tasks.iter().map(|task| task.name.as_str()).collect(),

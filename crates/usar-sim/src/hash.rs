@@ -33,7 +33,6 @@ pub struct Link {
 
 impl Link {
     /// Names of the parts in which two links of the same step differ.
-    #[must_use]
     pub fn differing_parts(&self, other: &Self) -> Vec<&'static str> {
         let pairs = PARTS.into_iter().zip(self.parts.iter().zip(&other.parts));
         pairs.filter(|(_, (a, b))| a != b).map(|(name, _)| name).collect()
@@ -59,19 +58,16 @@ impl HashChain {
     }
 
     /// A chain of these links, as it was recorded.
-    #[must_use]
     pub fn of(links: Vec<Link>) -> Self {
         Self { links }
     }
 
     /// The links, in order of their steps.
-    #[must_use]
     pub fn links(&self) -> &[Link] {
         &self.links
     }
 
     /// The last digest, 32 hexadecimal digits.
-    #[must_use]
     pub fn digest(&self) -> String {
         format!("{:032x}", self.links.last().map_or(0, |link| link.digest))
     }
@@ -81,7 +77,6 @@ impl HashChain {
 ///
 /// # Panics
 /// Never: all parts are of types that postcard can write to memory.
-#[must_use]
 pub(crate) fn part(value: &impl Serialize) -> u128 {
     xxh3_128(&postcard::to_stdvec(value).expect("the state can be written to memory"))
 }

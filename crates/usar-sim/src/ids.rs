@@ -13,7 +13,6 @@ macro_rules! id {
 
         impl $name {
             /// Position in the world's list of its kind.
-            #[must_use]
             pub fn index(self) -> usize {
                 self.0 as usize
             }

@@ -152,7 +152,6 @@ impl Physics {
     }
 
     /// Steps done, and those of them in which the engine ran.
-    #[must_use]
     pub fn steps(&self) -> [u64; 2] {
         self.steps
     }

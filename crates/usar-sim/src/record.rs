@@ -29,7 +29,6 @@ pub enum Status {
 
 impl Status {
     /// The status as one word, for tables.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Completed => "completed",
@@ -122,7 +121,6 @@ pub struct DecisionRecord {
 
 impl DecisionRecord {
     /// The members as they really were, by id.
-    #[must_use]
     pub fn team(&self) -> &[Member] {
         self.truth.as_ref().unwrap_or(&self.question.members)
     }
@@ -263,74 +261,62 @@ pub struct NamedRecord<'a> {
 
 impl TrialRecord {
     /// The record with the names of its scenario and policy.
-    #[must_use]
     pub fn named<'a>(&'a self, scenario: &'a str, policy: &'a str) -> NamedRecord<'a> {
         let rescuees = self.rescued();
         NamedRecord { schema_version: NAMED_VERSION, scenario, policy, rescuees, record: self }
     }
 
     /// The question as it was asked, with its history.
-    #[must_use]
     pub fn question(&self, asked: &DecisionRecord) -> Question {
         whole_question(asked, &self.ledger, self.heard.as_ref())
     }
 
     /// Results and costs of the task of this name.
-    #[must_use]
     pub fn task(&self, name: &str) -> Option<&TaskTotals> {
         self.tasks.iter().find(|task| task.task == name).map(|task| &task.totals)
     }
 
     /// Rescuees taken on board, delivered or not, all tasks.
-    #[must_use]
     pub fn secured(&self) -> u32 {
         self.tasks.iter().map(|task| task.totals.secured).sum()
     }
 
     /// Rescuees delivered, all tasks.
-    #[must_use]
     pub fn rescued(&self) -> u32 {
         self.tasks.iter().map(|task| task.totals.rescued).sum()
     }
 
     /// Energy spent by the whole team, in the unit of the scenario's costs.
-    #[must_use]
     pub fn energy(&self) -> f64 {
         self.tasks.iter().fold(0.0, |sum, task| sum + task.totals.energy) + self.ungrouped_energy
     }
 
     /// HP lost by the whole team, in the unit of the scenario's costs.
-    #[must_use]
     pub fn hp(&self) -> f64 {
         self.tasks.iter().fold(0.0, |sum, task| sum + task.totals.hp) + self.ungrouped_hp
     }
 
     /// Distance travelled by all robots together, in metres.
-    #[must_use]
     pub fn distance_m(&self) -> f64 {
         self.robots.iter().map(|robot| robot.distance_m).sum()
     }
 
     /// Time that all robots together yielded or were blocked, in seconds.
-    #[must_use]
     pub fn waiting_s(&self) -> f64 {
         self.robots.iter().map(|robot| robot.waiting_s).sum()
     }
 
     /// The longest time in which any robot had a goal and came no nearer to it, in seconds.
-    #[must_use]
     pub fn longest_stall_s(&self) -> f64 {
         self.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max)
     }
 
     /// Robots that ended stranded.
-    #[must_use]
     pub fn stranded(&self) -> usize {
         self.robots.iter().filter(|robot| robot.stranded).count()
     }
 
     /// Robots that ended disabled.
-    #[must_use]
     pub fn disabled(&self) -> usize {
         self.robots.iter().filter(|robot| robot.disabled).count()
     }

@@ -89,7 +89,6 @@ impl Robot {
     }
 
     /// Whether it is in the same state as another. Their fixed properties are not compared.
-    #[must_use]
     #[expect(clippy::float_cmp, reason = "a report is as the robot is, bit for bit, or it is not")]
     pub fn is_as(&self, other: &Self) -> bool {
         let Self { model: _, position, velocity, energy, hp, resources, load, condition, wreck_at } = self;
@@ -103,13 +102,11 @@ impl Robot {
     }
 
     /// The same robot with these levels of energy and health, in percent.
-    #[must_use]
     pub(crate) fn with_levels(&self, [energy, hp]: [f64; 2]) -> Self {
         Self { energy, hp, ..self.clone() }
     }
 
     /// Its needs when it is fresh, in the order of the table: full, stocked and without a load.
-    #[must_use]
     pub(crate) fn fresh_needs(&self, table: &[NeedModel]) -> Vec<f64> {
         let resources = self.spec.resources;
         let fresh = Self { resources, load: SmallVec::new(), ..self.with_levels([100.0; 2]) };
@@ -118,43 +115,36 @@ impl Robot {
     }
 
     /// Whether it can still act.
-    #[must_use]
     pub fn is_able(&self) -> bool {
         self.condition == Condition::Able
     }
 
     /// Number of rescuees for which it has room.
-    #[must_use]
     pub(crate) fn free_capacity(&self) -> u32 {
         self.spec.capacity - self.load.len() as u32
     }
 
     /// Share of its capacity that is used, from 0 to 1.
-    #[must_use]
     pub(crate) fn load_share(&self) -> f64 {
         self.load.len() as f64 / f64::from(self.spec.capacity.max(1))
     }
 
     /// Top speed at its present health, in metres per second.
-    #[must_use]
     pub fn speed(&self) -> f64 {
         self.spec.speed_mps * self.health_factor()
     }
 
     /// Sensing range at its present health, in metres.
-    #[must_use]
     pub(crate) fn sensing_range(&self) -> f64 {
         self.spec.sensing_m * self.health_factor()
     }
 
     /// Observing range at its present health, in metres.
-    #[must_use]
     pub(crate) fn observing_range(&self) -> f64 {
         self.spec.observing_m * self.health_factor()
     }
 
     /// Top speed at this health level, in percent, in metres per second.
-    #[must_use]
     pub(crate) fn speed_at(&self, hp: f64) -> f64 {
         self.spec.speed_mps * health_factor(hp, self.health_floor)
     }
@@ -174,7 +164,6 @@ impl Robot {
 
     /// The robot as a member of a team that is to be grouped; none if its needs are no numbers, which is
     /// never so in a validated scenario.
-    #[must_use]
     pub fn member(&self, table: &[NeedModel]) -> Option<Member> {
         Some(Member {
             id: self.id.0,
@@ -187,7 +176,6 @@ impl Robot {
     }
 
     /// Its needs that follow from a level. All of them do so in a straight line.
-    #[must_use]
     pub(crate) fn level_needs(&self, table: &[NeedModel]) -> Vec<LevelNeed> {
         let [empty, full] = [0.0, 100.0].map(|level| self.with_levels([level; 2]));
         let of = |(place, need): (u16, &NeedModel)| {

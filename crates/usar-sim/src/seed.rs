@@ -7,70 +7,48 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, Open01};
 
-/// The purpose of a stream.
+/// The purpose of a stream. Its number enters the seed and never changes, because a change would alter every
+/// published trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
     /// Initial battery level of a robot.
-    EnergyLevel,
+    EnergyLevel = 1,
     /// Initial health level of a robot.
-    HpLevel,
+    HpLevel = 2,
     /// Draws of the grouping policy in a round.
-    Grouping,
+    Grouping = 3,
     /// One piece of sampled debris.
-    SampledDebris,
+    SampledDebris = 4,
     /// One sampled radiation zone.
-    SampledRadiation,
+    SampledRadiation = 5,
     /// A distribution in place of a value, by the hash of the value's path.
-    Slot,
+    Slot = 6,
     /// One scattered thing.
-    Scatter,
+    Scatter = 7,
     /// The order in which robots become liars.
-    Liars,
+    Liars = 8,
     /// A reading of a gauge, by robot and level, at a step.
-    Gauge,
+    Gauge = 9,
     /// A lie that is drawn, by robot and level, at a step.
-    Lie,
+    Lie = 10,
     /// What a robot saw of a mate in a round.
-    Witness,
+    Witness = 11,
     /// The fate of a message, by link and number.
-    Message,
+    Message = 12,
     /// The place of a rescuee that a robot makes up, by robot and number.
-    Phantom,
-}
-
-impl Purpose {
-    /// The number that enters the seed. It never changes, because a change would alter every published trial.
-    fn key(self) -> u64 {
-        match self {
-            Self::EnergyLevel => 1,
-            Self::HpLevel => 2,
-            Self::Grouping => 3,
-            Self::SampledDebris => 4,
-            Self::SampledRadiation => 5,
-            Self::Slot => 6,
-            Self::Scatter => 7,
-            Self::Liars => 8,
-            Self::Gauge => 9,
-            Self::Lie => 10,
-            Self::Witness => 11,
-            Self::Message => 12,
-            Self::Phantom => 13,
-        }
-    }
+    Phantom = 13,
 }
 
 /// The stream of one purpose and entity in one trial.
-#[must_use]
 pub fn stream(trial_seed: u64, purpose: Purpose, entity: u64) -> ChaCha8Rng {
     stream_at(trial_seed, purpose, entity, 0)
 }
 
 /// The stream of one purpose and entity at one moment of a trial: a step, a round or a number.
-#[must_use]
 pub fn stream_at(trial_seed: u64, purpose: Purpose, entity: u64, moment: u64) -> ChaCha8Rng {
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&trial_seed.to_le_bytes());
-    seed[8..16].copy_from_slice(&purpose.key().to_le_bytes());
+    seed[8..16].copy_from_slice(&(purpose as u64).to_le_bytes());
     seed[16..24].copy_from_slice(&entity.to_le_bytes());
     seed[24..].copy_from_slice(&moment.to_le_bytes());
     ChaCha8Rng::from_seed(seed)

@@ -142,7 +142,6 @@ impl Simulation {
     ///
     /// # Panics
     /// Never: the state is of types that postcard can write to memory.
-    #[must_use]
     pub fn snapshot(&self, policy: &str) -> Vec<u8> {
         let identity = Identity::new(self.given(), policy, self.seed());
         let payload =

@@ -1,55 +1,26 @@
 //! The stages of a step by name, to measure the time of each.
 
-/// The stages of a step, in their order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stage {
-    /// Robots notice what is in range.
-    Sense,
-    /// Rounds, grouping, claims, goals.
-    Mission,
-    /// Routes.
-    Plan,
-    /// Right of way.
-    Resolve,
-    /// Changes of velocity.
-    Drive,
-    /// The physics.
-    Integrate,
-    /// Energy for moving, HP for radiation.
-    Exposure,
-    /// Loading, delivering, resting.
-    Rescue,
-    /// Metrics, hash chain, invariants.
-    Record,
-}
-
-impl Stage {
-    /// All stages, in their order.
-    pub const ALL: [Self; 9] = [
-        Self::Sense,
-        Self::Mission,
-        Self::Plan,
-        Self::Resolve,
-        Self::Drive,
-        Self::Integrate,
-        Self::Exposure,
-        Self::Rescue,
-        Self::Record,
-    ];
-
-    /// The stage as one word, for tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Sense => "sense",
-            Self::Mission => "mission",
-            Self::Plan => "plan",
-            Self::Resolve => "resolve",
-            Self::Drive => "drive",
-            Self::Integrate => "integrate",
-            Self::Exposure => "exposure",
-            Self::Rescue => "rescue",
-            Self::Record => "record",
-        }
+ron_tree::named! {
+    /// The stages of a step, in their order.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Stage {
+        /// Robots notice what is in range.
+        Sense = "sense",
+        /// Rounds, grouping, claims, goals.
+        Mission = "mission",
+        /// Routes.
+        Plan = "plan",
+        /// Right of way.
+        Resolve = "resolve",
+        /// Changes of velocity.
+        Drive = "drive",
+        /// The physics.
+        Integrate = "integrate",
+        /// Energy for moving, HP for radiation.
+        Exposure = "exposure",
+        /// Loading, delivering, resting.
+        Rescue = "rescue",
+        /// Metrics, hash chain, invariants.
+        Record = "record",
     }
 }

@@ -28,7 +28,6 @@ pub struct WorkRates {
 }
 
 /// Energy spent in one step of `dt` seconds, in the unit of the rates.
-#[must_use]
 pub(crate) fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> f64 {
     let moved = if moving { rates.per_step + rates.per_metre * metres } else { 0.0 };
     moved + rates.per_second * dt
@@ -36,14 +35,12 @@ pub(crate) fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> 
 
 /// Health lost in one step of `dt` seconds inside `zones` overlapping zones, which add up, in the unit of the
 /// rates.
-#[must_use]
 pub(crate) fn hp_cost(rates: &Rates, zones: usize, metres: f64, dt: f64) -> f64 {
     zones as f64 * (rates.per_step + rates.per_metre * metres + rates.per_second * dt)
 }
 
 /// Factor in [floor, 1] on speed, sensing and observing range at a health level in percent. It is 1 at 100 %
 /// and falls linearly to `floor` at 0 %.
-#[must_use]
 pub fn health_factor(hp_percent: f64, floor: f64) -> f64 {
     floor + (1.0 - floor) * (hp_percent / 100.0).clamp(0.0, 1.0)
 }

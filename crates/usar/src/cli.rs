@@ -22,7 +22,6 @@ use crate::running::{STOP, is_stopped, status_of_signal, stop_on_signals, tell};
 /// Runs the command with which the process was called. The exit status is 0 for a result, 1 for a failure
 /// of the run, 2 for unusable input, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM and 129 after
 /// SIGHUP.
-#[must_use]
 pub fn main() -> ExitCode {
     main_with(policies::standard())
 }
@@ -38,7 +37,6 @@ pub fn main() -> ExitCode {
 ///     usar::main_with(registry)
 /// }
 /// ```
-#[must_use]
 pub fn main_with(policies: Registry) -> ExitCode {
     CompleteEnv::with_factory(|| completing(command())).var(ASKED).complete();
     ExitCode::from(run(std::env::args_os(), policies))

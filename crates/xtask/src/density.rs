@@ -4,12 +4,10 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use usar_sim::scenario::{
-    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Fidelity, InitialLevels, MissionRules, Normal,
-    PlanningRules, Point, RoleFile, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words,
+    DebrisFile, DebrisShape, InitialLevels, Normal, Point, Row, Scenario, ScenarioFile, TaskFile,
 };
 
-/// The scenario from which the robots have their roles and needs, but not their size and speed.
-const PAPER: &str = include_str!("../../../scenarios/paper.ron");
+use crate::worlds::base;
 
 /// Radius of all robots, in metres.
 pub const RADIUS_M: f64 = 0.25;
@@ -38,7 +36,7 @@ pub fn boxes(robots: u32, is_taken: impl Fn(Point) -> bool) -> Vec<DebrisFile> {
         let rotation_deg = draws.random_range(0.0..180.0);
         if !is_taken(at) {
             let shape = DebrisShape::Box(2.0 * half[0], 2.0 * half[1]);
-            boxes.push(DebrisFile { shape, at, rotation_deg, movable: None, name: None });
+            boxes.push(DebrisFile { rotation_deg, ..DebrisFile::fixed(shape, at) });
         }
     }
     boxes
@@ -62,14 +60,7 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         while left > 0 {
             let count = left.min(per_row);
             let width_m = spacing * f64::from(count - 1);
-            team.push(Row {
-                role: role.to_owned(),
-                count,
-                center: [side / 2.0, y],
-                width_m,
-                levels: None,
-                body: None,
-            });
+            team.push(Row { count, width_m, ..Row::of_one(role, [side / 2.0, y]) });
             left -= count;
             y += spacing;
         }
@@ -89,47 +80,20 @@ pub fn mission(robots: u32, duration_s: f64, to_tasks_m: Option<f64>) -> Scenari
         let at_rest = |task: &TaskFile| (x - task.rest[0]).abs() < block && (at - task.rest[1]).abs() < block;
         at < y + 1.5 || tasks.iter().any(at_rest)
     };
-    let paper = Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
-    let role = |role: &RoleFile| RoleFile {
-        radius_m: RADIUS_M,
-        speed_mps: SPEED_MPS,
-        acceleration_mps2: 2.0,
-        ..role.clone()
-    };
     let mut file = ScenarioFile {
-        format: usar_sim::scenario::FORMAT,
         name: format!("density-{robots}"),
-        description: String::new(),
-        only_policy: String::new(),
-        duration_s,
-        dt_s: DT_S,
-        fidelity: Fidelity::AsWritten,
-        arena_m: [side, side],
         debris: boxes(robots, is_taken),
         team,
-        roles: paper.roles.iter().map(role).collect(),
-        needs: paper.needs.clone(),
         initial_levels: InitialLevels {
             energy: Normal { mean: 80.0, sd: 20.0 },
             hp: Normal { mean: 90.0, sd: 10.0 },
         },
         tasks,
-        errands: Vec::new(),
-        walls: Vec::new(),
-        radiation: Vec::new(),
-        sampled: Sampled::default(),
-        scatter: Vec::new(),
-        timeline: Vec::new(),
-        reports: None,
-        medium: None,
-        deceit: Vec::new(),
-        costs: Costs::default(),
-        mission: MissionRules::default(),
-        planning: PlanningRules::default(),
-        conflicts: ConflictRules::default(),
-        words: Words::default(),
-        draws: Draws::new(),
+        ..base(0, [side, side], duration_s)
     };
+    for role in &mut file.roles {
+        (role.radius_m, role.speed_mps, role.acceleration_mps2) = (RADIUS_M, SPEED_MPS, 2.0);
+    }
     if let Err(problems) = Scenario::try_from(file.clone()) {
         // A few of the boxes hide a rescuee from everybody's reach: they are left out.
         let number = |field: &str| field.strip_prefix("debris[")?.split(']').next()?.parse::<usize>().ok();

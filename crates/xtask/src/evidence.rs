@@ -20,7 +20,6 @@ const MATES: usize = 10;
 
 /// The question with seven rounds of evidence, asked in the eighth. Robots report every ten seconds and rate up
 /// to ten mates a round.
-#[must_use]
 pub fn with_evidence(question: Question) -> Question {
     let mut draws = ChaCha8Rng::seed_from_u64(11);
     let ids: Vec<u32> = question.members.iter().map(|member| member.id).collect();

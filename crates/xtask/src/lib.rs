@@ -3,18 +3,14 @@
 
 #![expect(
     clippy::missing_panics_doc,
-    clippy::must_use_candidate,
     reason = "these are parts of tests: they panic where something is not as it must be"
 )]
 
 pub mod bend;
-pub mod calibrated;
-pub mod calibration;
 pub mod damage;
 pub mod density;
 pub mod evidence;
 pub mod golden;
-pub mod grid;
 pub mod journeys;
 pub mod kills;
 pub mod limits;

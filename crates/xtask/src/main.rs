@@ -6,8 +6,8 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{
-    calibration, coverage, damage, golden, grid, kills, limits, million, mutations, pages, quiet, reference,
-    scale, scenarios, soak, work, worlds,
+    coverage, damage, golden, kills, limits, mutations, pages, quiet, reference, scale, scenarios, soak,
+    work, worlds,
 };
 
 fn main() -> ExitCode {
@@ -15,13 +15,10 @@ fn main() -> ExitCode {
     let (task, arguments) =
         arguments.split_first().map_or(("", &[][..]), |(task, rest)| (task.as_str(), rest));
     match task {
-        "calibration" => calibration::run(arguments),
         "coverage" => coverage::run(arguments),
         "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
-        "grid" => grid::run(arguments),
         "kills" => kills::run(arguments),
-        "million" => million::run(arguments),
         "mutations" => mutations::run(arguments),
         "limits" => limits::run(),
         "movement" => xtask::movement::main(),
@@ -36,9 +33,8 @@ fn main() -> ExitCode {
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: calibration, coverage, damage, golden, grid, kills, limits, \
-                 million, movement, mutations, navigation, pages, quiet, reference, scale, scenarios, soak, \
-                 work, worlds"
+                "xtask: no task {task:?}. Tasks: coverage, damage, golden, kills, limits, movement, \
+                 mutations, navigation, pages, quiet, reference, scale, scenarios, soak, work, worlds"
             );
             ExitCode::from(2)
         }

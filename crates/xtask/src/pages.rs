@@ -23,7 +23,6 @@ pub struct Request<'p> {
 
 impl<'p> Request<'p> {
     /// The request in a line of a page, if there is one.
-    #[must_use]
     pub fn of(line: &'p str) -> Option<Self> {
         let asked = line.strip_prefix(MARK)?.strip_suffix(" -->")?;
         let (asked, file) = parts(asked, " > ");

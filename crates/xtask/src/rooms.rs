@@ -63,7 +63,7 @@ fn draw(seed: u64, draws: &mut ChaCha8Rng) -> Option<Scenario> {
         let center = kinds[role.min(1)].draw(draws, &taken)?;
         taken.push(center);
         let role = file.roles[role].name.clone();
-        file.team.push(Row { role, count: 1, center, width_m: 0.0, levels: None, body: None });
+        file.team.push(Row::of_one(&role, center));
     }
     if seed.is_multiple_of(2) { errands(file, draws, &kinds, taken) } else { mission(file, draws, &kinds) }
 }
@@ -176,13 +176,8 @@ fn wall(
     let mut add = |begin: f64, end: f64| {
         let [low, high] = [along(begin), along(end)];
         let size = [0, 1].map(|k| (high[k] - low[k]).max(WALL_M));
-        pieces.push(DebrisFile {
-            shape: DebrisShape::Box(size[0], size[1]),
-            at: [0, 1].map(|k| f64::midpoint(low[k], high[k])),
-            rotation_deg: 0.0,
-            movable: None,
-            name: None,
-        });
+        let at = [0, 1].map(|k| f64::midpoint(low[k], high[k]));
+        pieces.push(DebrisFile::fixed(DebrisShape::Box(size[0], size[1]), at));
     };
     for part in 0..parts {
         let (low, high) = (length * part as f64 / parts as f64, length * (part + 1) as f64 / parts as f64);

@@ -14,12 +14,16 @@ use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::model::RestSlots;
 use usar_sim::scenario::{
-    ConflictRules, Costs, DebrisFile, DebrisShape, Draws, Errand, Fidelity, InitialLevels, MissionRules,
-    Movable, Normal, PlanningRules, Point, Row, Sampled, Scenario, ScenarioFile, TaskFile, Words, ZoneFile,
+    DebrisFile, DebrisShape, Errand, Movable, Point, Row, Scenario, ScenarioFile, TaskFile, ZoneFile,
+    parse_ron,
 };
 
 /// The scenario from which the robots have their roles and needs.
 const PAPER: &str = include_str!("../../../scenarios/paper.ron");
+
+/// What all worlds have.
+const NOTHING: &str = "(name: \"\", duration_s: 0.0, dt_s: 0.02, arena_m: (0.0, 0.0), team: [], \
+    initial_levels: (energy: (mean: 90.0, sd: 5.0), hp: (mean: 90.0, sd: 10.0)))";
 
 /// Distance between the points of the flood fill, in metres.
 const CELL_M: f64 = 0.15;
@@ -58,7 +62,7 @@ fn errands(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
         };
         let center = free.draw(draws, &taken)?;
         taken.push(center);
-        team.push(Row { role: role.to_owned(), count: 1, center, width_m: 0.0, levels: None, body: None });
+        team.push(Row::of_one(role, center));
     }
     let mut errands = Vec::new();
     for robot in 0..robots {
@@ -88,13 +92,9 @@ fn mission(seed: u64, draws: &mut ChaCha8Rng) -> Option<ScenarioFile> {
     let side = 30.0 + f64::from(robots).sqrt() * draws.random_range(2.0..5.0);
     let arena = [side * 1.3, side];
     let spacing = draws.random_range(1.2..2.2);
-    let row = |role: &str, count: u32, y: f64| Row {
-        role: role.to_owned(),
-        count,
-        center: [arena[0] / 2.0, y],
-        width_m: spacing * f64::from(count.saturating_sub(1)),
-        levels: None,
-        body: None,
+    let row = |role: &str, count: u32, y: f64| {
+        let width_m = spacing * f64::from(count.saturating_sub(1));
+        Row { count, width_m, ..Row::of_one(role, [arena[0] / 2.0, y]) }
     };
     let mut team = vec![row("carrier", carriers, 2.0), row("supplier", suppliers, 4.0)];
     if observers > 0 {
@@ -175,54 +175,19 @@ fn debris(draws: &mut ChaCha8Rng, arena: Point, above: f64, robots: u32, cover: 
             !bounds.intersects(&doorway.loosened(APRON_M))
         });
         for (low, high) in [(from, at), (at + door, to)] {
-            debris.push(DebrisFile {
-                shape: DebrisShape::Box(0.4, high - low),
-                at: [x, f64::midpoint(low, high)],
-                rotation_deg: 0.0,
-                movable: None,
-                name: None,
-            });
+            debris.push(DebrisFile::fixed(DebrisShape::Box(0.4, high - low), [x, f64::midpoint(low, high)]));
         }
     }
     debris
 }
 
+/// A world without anything in it, for robots of the paper's roles with its needs.
 pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
     let paper = Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
-    ScenarioFile {
-        format: usar_sim::scenario::FORMAT,
-        name: format!("world-{seed}"),
-        description: String::new(),
-        only_policy: String::new(),
-        duration_s,
-        dt_s: 0.02,
-        fidelity: Fidelity::AsWritten,
-        arena_m,
-        team: Vec::new(),
-        roles: paper.roles.clone(),
-        needs: paper.needs.clone(),
-        initial_levels: InitialLevels {
-            energy: Normal { mean: 90.0, sd: 5.0 },
-            hp: Normal { mean: 90.0, sd: 10.0 },
-        },
-        tasks: Vec::new(),
-        errands: Vec::new(),
-        debris: Vec::new(),
-        walls: Vec::new(),
-        radiation: Vec::new(),
-        sampled: Sampled::default(),
-        scatter: Vec::new(),
-        timeline: Vec::new(),
-        reports: None,
-        medium: None,
-        deceit: Vec::new(),
-        costs: Costs::default(),
-        mission: MissionRules::default(),
-        planning: PlanningRules::default(),
-        conflicts: ConflictRules::default(),
-        words: Words::default(),
-        draws: Draws::new(),
-    }
+    let nothing: ScenarioFile =
+        parse_ron(NOTHING, "nothing.ron".as_ref()).expect("a scenario without robots");
+    let (roles, needs) = (paper.roles.clone(), paper.needs.clone());
+    ScenarioFile { name: format!("world-{seed}"), duration_s, arena_m, roles, needs, ..nothing }
 }
 
 /// The largest connected part of the free plane, as a grid.

@@ -6,6 +6,7 @@ import { Robot } from '../recording/robotRow';
 import { numberOf } from '../recording/state';
 import type { Point } from '../recording/types';
 import { boxAt } from './labels';
+import { addDisc, drawLine, writeRimmed } from './marks';
 import { LARGE_TEAM, type Sheet } from './sheet';
 
 /** Height of a number, in pixels. */
@@ -51,11 +52,7 @@ function drawNumbers(
     ]);
     if (!place) continue;
     if (place.isFar) drawLead(context, colours.soft, places[robot], place.middle);
-    context.lineWidth = 3;
-    context.strokeStyle = colours.ground;
-    context.strokeText(text, ...place.middle);
-    context.fillStyle = colours.ink;
-    context.fillText(text, ...place.middle);
+    writeRimmed(context, text, place.middle, [colours.ink, colours.ground]);
   }
 }
 
@@ -63,10 +60,7 @@ function drawNumbers(
 function drawLead(context: CanvasRenderingContext2D, colour: string, from: Point, to: Point): void {
   context.strokeStyle = colour;
   context.lineWidth = 0.75;
-  context.beginPath();
-  context.moveTo(...from);
-  context.lineTo(...to);
-  context.stroke();
+  drawLine(context, from, to);
 }
 
 /** Energy and HP as two bars below a robot. */
@@ -107,9 +101,7 @@ function drawLoad(
   context.fillStyle = colours.rescuee;
   context.beginPath();
   for (let i = 0; i < load; i++) {
-    const cx = x + (i - (load - 1) / 2) * 4;
-    context.moveTo(cx + 1.5, y - radius - 4);
-    context.arc(cx, y - radius - 4, 1.5, 0, 2 * Math.PI);
+    addDisc(context, x + (i - (load - 1) / 2) * 4, y - radius - 4, 1.5);
   }
   context.fill();
 }

@@ -4,6 +4,7 @@ import { Stream } from '../recording/segment';
 import { knownBy, taskOf, zonesOn } from '../recording/state';
 import type { Point } from '../recording/types';
 import { boxAt } from './labels';
+import { addDisc, writeRimmed } from './marks';
 import { addDebris } from './shapes';
 import type { Sheet } from './sheet';
 import { groupColour } from './theme';
@@ -58,10 +59,7 @@ export function drawGround({ context, ratio, camera, recording, colours }: Sheet
   });
   context.fillStyle = colours.faint;
   const homes = new Path2D();
-  for (const { home } of world.robots) {
-    homes.moveTo(home[0] + 0.5, home[1]);
-    homes.arc(home[0], home[1], 0.5, 0, 2 * Math.PI);
-  }
+  for (const { home } of world.robots) addDisc(homes, ...home, 0.5);
   context.fill(homes);
   const wall = Math.max(3 * pixel, 0.3);
   context.strokeStyle = colours.wall;
@@ -81,11 +79,7 @@ export function drawNames({ context, camera, recording, colours, labels }: Sheet
     const box = boxAt([left, top - 9], [context.measureText(text).width, 13]);
     if (!labels.isFree(box)) return;
     labels.take(box);
-    context.lineWidth = 3;
-    context.strokeStyle = colours.ground;
-    context.strokeText(text, left, top - 9);
-    context.fillStyle = colour;
-    context.fillText(text, left, top - 9);
+    writeRimmed(context, text, [left, top - 9], [colour, colours.ground]);
   };
   world.tasks.forEach((task, number) => {
     const top = task.center[1] + task.size_m[1] / 2 + 1.5;
@@ -160,10 +154,7 @@ export function drawGroundObjects({ context, camera, recording, moment, looks, c
     const [x, y, angle] = [row[0] / 1000, row[1] / 1000, row[2] / 10000];
     const isKnown = known?.debris.has(number) ?? true;
     addDebris(isKnown ? (piece.movable ? movable : fixed) : unknown, piece, x, y, angle);
-    if (piece.movable && isKnown) {
-      handles.moveTo(x + 0.16, y);
-      handles.arc(x, y, 0.16, 0, 2 * Math.PI);
-    }
+    if (piece.movable && isKnown) addDisc(handles, x, y, 0.16);
   });
   context.lineWidth = pixel;
   context.fillStyle = colours.debris;
@@ -194,12 +185,9 @@ export function drawRescuees({ context, camera, recording, moment, colours }: Sh
     const [state, robot] = moment.segment.row(Stream.Rescuees, number, moment.frame);
     const [x, y] = camera.toScreen(at);
     const add = (path: Path2D, r: number): void => {
-      if (r < 2) {
-        path.rect(x - r, y - r, 2 * r, 2 * r); // looks the same, and is faster where there are thousands
-        return;
-      }
-      path.moveTo(x + r, y);
-      path.arc(x, y, r, 0, 2 * Math.PI);
+      // A square looks the same where it is small, and is faster where there are thousands.
+      if (r < 2) path.rect(x - r, y - r, 2 * r, 2 * r);
+      else addDisc(path, x, y, r);
     };
     if (state <= 1) add(waiting, radius);
     if (state === 1) {

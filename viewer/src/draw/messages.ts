@@ -2,6 +2,7 @@
 
 import type { Happening } from '../recording/recording';
 import type { Point } from '../recording/types';
+import { drawLine } from './marks';
 import type { Sheet } from './sheet';
 
 /** How long a message is shown, in seconds. */
@@ -37,10 +38,7 @@ export function drawMessages(sheet: Sheet, places: Point[]): void {
     context.globalAlpha = 1 - (now - time) / SHOWN;
     context.strokeStyle = isLost ? colours.wait : colours.energy;
     context.setLineDash(isLost ? [4, 4] : []);
-    context.beginPath();
-    context.moveTo(x, y);
-    context.lineTo(x + part * (toX - x), y + part * (toY - y));
-    context.stroke();
+    drawLine(context, [x, y], [x + part * (toX - x), y + part * (toY - y)]);
   }
   context.globalAlpha = 1;
   context.setLineDash([]);

@@ -4,6 +4,7 @@ import { Stream } from '../recording/segment';
 import { Robot } from '../recording/robotRow';
 import { bodyOf, numberOf, routeAt, taskOf } from '../recording/state';
 import type { Point } from '../recording/types';
+import { drawLine } from './marks';
 import { addShape, shapesOf } from './shapes';
 import { LARGE_TEAM, type Sheet } from './sheet';
 import { groupColour } from './theme';
@@ -32,10 +33,7 @@ export function drawTrails({ context, camera, recording, moment }: Sheet, places
         from.motion(robot, 'y_mm', at) / 1000,
       ]);
       context.globalAlpha = 0.38 * (1 - back / TRAIL);
-      context.beginPath();
-      context.moveTo(...last);
-      context.lineTo(...next);
-      context.stroke();
+      drawLine(context, last, next);
       last = next;
     }
   });
@@ -65,10 +63,7 @@ export function drawRoutes(sheet: Sheet, places: Point[]): void {
     paths.clear();
     context.globalAlpha = 1;
   };
-  if (looks.routes)
-    places.forEach((_, robot) => {
-      add(robot);
-    });
+  if (looks.routes) places.forEach((_, robot) => add(robot));
   stroke(1, 0.32);
   if (looks.selected === null || looks.selected >= places.length) return;
   add(looks.selected);
@@ -82,12 +77,8 @@ function drawGoal({ context, camera, moment, colours }: Sheet, robot: number): v
   const [x, y] = camera.toScreen(goal);
   context.strokeStyle = colours.ink;
   context.lineWidth = 2;
-  context.beginPath();
-  context.moveTo(x - 5, y);
-  context.lineTo(x + 5, y);
-  context.moveTo(x, y - 5);
-  context.lineTo(x, y + 5);
-  context.stroke();
+  drawLine(context, [x - 5, y], [x + 5, y]);
+  drawLine(context, [x, y - 5], [x, y + 5]);
 }
 
 /** How large robots are drawn, in pixels. */
@@ -162,10 +153,7 @@ export function drawLinks({ context, moment, colours }: Sheet, places: Point[]):
     if (length < 1) return;
     const [dx, dy] = [(toX - x) / length, (toY - y) / length];
     const [endX, endY] = [toX - dx * 8, toY - dy * 8];
-    context.beginPath();
-    context.moveTo(x, y);
-    context.lineTo(endX, endY);
-    context.stroke();
+    drawLine(context, [x, y], [endX, endY]);
     context.beginPath();
     context.moveTo(endX + dx * 5, endY + dy * 5);
     context.lineTo(endX - dy * 3.5, endY + dx * 3.5);

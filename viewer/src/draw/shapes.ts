@@ -1,6 +1,7 @@
 /** Shapes of roles, and outlines of debris. */
 
 import type { DebrisPiece, Role } from '../recording/types';
+import { addDisc } from './marks';
 
 /** Corners of a role's shape on the unit circle; none for a disc. */
 type Shape = readonly (readonly [number, number])[];
@@ -25,8 +26,7 @@ export function shapesOf(roles: readonly Role[]): Shape[] {
 /** Adds a shape to a path, about as large as a disc of that radius. */
 export function addShape(path: Path2D, shape: Shape, x: number, y: number, radius: number): void {
   if (shape.length === 0) {
-    path.moveTo(x + radius, y);
-    path.arc(x, y, radius, 0, 2 * Math.PI);
+    addDisc(path, x, y, radius);
     return;
   }
   const size = radius * (shape.length === 3 ? 1.35 : shape.length === 4 ? 1.18 : 1.1);
@@ -40,8 +40,7 @@ export function addShape(path: Path2D, shape: Shape, x: number, y: number, radiu
 export function addDebris(path: Path2D, piece: DebrisPiece, x: number, y: number, angle: number): void {
   const { shape } = piece;
   if ('Disc' in shape) {
-    path.moveTo(x + shape.Disc, y);
-    path.arc(x, y, shape.Disc, 0, 2 * Math.PI);
+    addDisc(path, x, y, shape.Disc);
     return;
   }
   let corners;

@@ -64,9 +64,9 @@ export class Choices {
 
   setPolicies(policies: readonly PolicyFacts[]): void {
     this.policies = [...policies, OWN];
-    const options = this.policies.map(({ name, about }) => {
-      return element('option', { value: name, label: `${name}: ${about}` });
-    });
+    const options = this.policies.map(({ name, about }) =>
+      element('option', { value: name, label: `${name}: ${about}` }),
+    );
     this.list.replaceChildren(...options);
     this.tell();
   }

@@ -37,9 +37,7 @@ export class Header {
   private readonly status = element('span', { class: 'hint said', role: 'status' });
 
   constructor(actions: Actions) {
-    this.select.addEventListener('change', () => {
-      actions.choose(this.select.value);
-    });
+    this.select.addEventListener('change', () => actions.choose(this.select.value));
     const saves = element('div', { class: 'saves', role: 'group', 'aria-label': 'Save' });
     saves.append(
       element('span', { class: 'hint' }, 'Save'),

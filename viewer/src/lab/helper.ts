@@ -40,17 +40,16 @@ export class Helper {
       const what = event.message ? event.message.replace(/^Uncaught /, '') : 'a worker could not start.';
       this.end(new Error(code === '' ? what : `Own policy${line}: ${what}`));
     };
-    this.worker.onmessageerror = () => {
+    this.worker.onmessageerror = () =>
       this.end(new Error('The browser cannot hand the simulator to a worker.'));
-    };
     this.start(module);
   }
 
   private start(module: WebAssembly.Module | ArrayBuffer): void {
     // A failure of the start is told by each request that follows.
-    this.ask({ kind: 'start', module }).catch((error: unknown) => {
-      this.end(error instanceof Error ? error : new Error(String(error)));
-    });
+    this.ask({ kind: 'start', module }).catch((error: unknown) =>
+      this.end(error instanceof Error ? error : new Error(String(error))),
+    );
   }
 
   private hear(answer: Answer): void {

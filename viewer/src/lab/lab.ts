@@ -43,23 +43,15 @@ export class Lab {
     private readonly page: string,
   ) {
     // The order matters: what is made later tells what was made before.
-    this.problems = new Problems((problem) => {
-      this.texts.goTo(problem);
-    });
+    this.problems = new Problems((problem) => this.texts.goTo(problem));
     this.checker = new Checker(
       () => this.texts.source(),
-      (checked) => {
-        this.checked(checked);
-      },
-      (sentence) => {
-        this.problems.say(sentence);
-      },
+      (checked) => this.checked(checked),
+      (sentence) => this.problems.say(sentence),
     );
     this.sliders = new Sliders(
       () => this.texts.shown ?? '',
-      (change, goesOn) => {
-        this.texts.change(change, goesOn);
-      },
+      (change, goesOn) => this.texts.change(change, goesOn),
     );
     this.header = this.makeHeader();
     this.choices = new Choices(
@@ -74,9 +66,7 @@ export class Lab {
       window.scrollTo(0, this.scrolled);
     });
     // The texts tell at once that they are there.
-    this.texts = new Texts(() => {
-      this.changed();
-    });
+    this.texts = new Texts(() => this.changed());
     this.changed();
     this.kept = this.fingerprint();
     this.layout(root);
@@ -84,16 +74,12 @@ export class Lab {
 
   private makeHeader(): Header {
     return new Header({
-      choose: (path) => {
-        this.texts.choose(path);
-      },
+      choose: (path) => this.texts.choose(path),
       saveScenario: () => {
         const [name, text] = this.texts.scenario;
         download(fileName(name), text, 'text/plain');
       },
-      saveTable: () => {
-        this.saveTable();
-      },
+      saveTable: () => this.saveTable(),
       savePage: () => {
         download('usar-lab.html', withSaved(this.page, this.session()), 'text/html');
         this.kept = this.fingerprint();
@@ -103,9 +89,9 @@ export class Lab {
   }
 
   private layout(root: HTMLElement): void {
-    const reset = button('Original', 'Put the original text back (it can be undone)', () => {
-      this.texts.reset();
-    });
+    const reset = button('Original', 'Put the original text back (it can be undone)', () =>
+      this.texts.reset(),
+    );
     this.texts.bar.append(reset);
     this.texts.root.append(this.problems.root);
     const sliders = element(
@@ -236,9 +222,7 @@ export class Lab {
     const { tasks } = checked.scenario;
     const plan = { source: texts.source(), isOriginal: texts.isOriginal, tasks, code: texts.code, ...choice };
     texts.markOwn(null);
-    const experiment = new Experiment(plan, (pair) => {
-      this.progress(experiment, pair);
-    });
+    const experiment = new Experiment(plan, (pair) => this.progress(experiment, pair));
     this.experiment = experiment;
     this.table.begin(experiment);
     await experiment.run(this.simulator);

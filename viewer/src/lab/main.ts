@@ -27,9 +27,8 @@ async function begin(root: HTMLElement): Promise<void> {
   window.usarLab = { lab, running };
   const saved = sessionOf(savedBlock());
   if (saved) lab.restore(saved);
-  const told = (error: unknown): void => {
+  const told = (error: unknown): void =>
     lab.say(`The link cannot be read: ${error instanceof Error ? error.message : String(error)}`);
-  };
   await restoreAddress(lab).catch(told);
   window.addEventListener('hashchange', () => {
     const isWanted = !lab.isEdited || window.confirm('Replace your texts by those of the link?');

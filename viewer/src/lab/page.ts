@@ -44,7 +44,5 @@ export function download(name: string, content: BlobPart, type: string): void {
   link.download = name;
   link.click();
   // The browser has begun to read it by then.
-  setTimeout(() => {
-    URL.revokeObjectURL(url);
-  }, 10_000);
+  setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }

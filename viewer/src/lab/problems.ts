@@ -46,9 +46,7 @@ export class Problems {
     const button = element('button', { type: 'button', class: 'problem' });
     if (place !== '') button.append(element('b', {}, place.replace(/, $/, '')), ' ');
     button.append(problem.sentence + hint);
-    button.addEventListener('click', () => {
-      this.goTo(problem);
-    });
+    button.addEventListener('click', () => this.goTo(problem));
     return button;
   }
 }

@@ -33,9 +33,7 @@ export class Sliders {
       fields.length === this.rows.length &&
       fields.every(({ label }, i) => label === this.rows[i].field.label);
     if (!isSame) this.rebuild(fields);
-    fields.forEach((field, i) => {
-      this.set(this.rows[i], field);
-    });
+    fields.forEach((field, i) => this.set(this.rows[i], field));
   }
 
   private set(row: Row, field: Field): void {

@@ -60,9 +60,9 @@ export class PairTable {
       'Energy A',
       'Energy B',
     ];
-    const heads = [...head, 'State hash A', 'State hash B', 'Command line'].map((text) => {
-      return element('th', { scope: 'col' }, text);
-    });
+    const heads = [...head, 'State hash A', 'State hash B', 'Command line'].map((text) =>
+      element('th', { scope: 'col' }, text),
+    );
     const body = element('tbody');
     for (const pair of experiment.pairs) {
       const open = button(

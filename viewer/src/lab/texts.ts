@@ -81,9 +81,7 @@ export class Texts {
     this.tabNames = key;
     const tabs = names.map((name) => {
       const text = name === OWN ? 'Own policy' : name;
-      const tab = button(text, `Edit ${name === OWN ? 'your own policy' : name}`, () => {
-        this.show(name);
-      });
+      const tab = button(text, `Edit ${name === OWN ? 'your own policy' : name}`, () => this.show(name));
       tab.setAttribute('aria-pressed', String(name === this.editor.shown));
       return tab;
     });

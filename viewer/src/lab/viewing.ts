@@ -117,14 +117,12 @@ export class Viewing {
     const { seed, a, b } = this.pair;
     const title = `Seed ${seed}: ${rescued(a)}, ${rescued(b)}`;
     if (this.bar.querySelector('strong')?.textContent === title) return;
-    const back = button('◂ Laboratory', 'Go back to the laboratory', () => {
-      this.close();
-    });
+    const back = button('◂ Laboratory', 'Go back to the laboratory', () => this.close());
     const saves = [a, b].map((trial) => {
       const name = this.nameOf(trial);
-      return button(`Save ${trial.policy}`, `Save the recording ${name}`, () => {
-        download(name, recordingOf(trial), 'application/octet-stream');
-      });
+      return button(`Save ${trial.policy}`, `Save the recording ${name}`, () =>
+        download(name, recordingOf(trial), 'application/octet-stream'),
+      );
     });
     this.bar.replaceChildren(back, element('strong', {}, title), ...saves);
   }

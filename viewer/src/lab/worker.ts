@@ -14,9 +14,8 @@ let module: WebAssembly.Module | null = null;
 /** The module for calls; trials have their own. */
 let shared: Module | null = null;
 
-const tell = (answer: Answer, transfer: Transferable[] = []): void => {
+const tell = (answer: Answer, transfer: Transferable[] = []): void =>
   (self as unknown as Worker).postMessage(answer, transfer);
-};
 
 async function fresh(): Promise<Module> {
   if (!module) throw new Error('The simulator was not loaded.');
@@ -28,9 +27,7 @@ const channel = new MessageChannel();
 /** Lets the browser end this worker, if it is to end. */
 const pause = (): Promise<void> =>
   new Promise((resolve) => {
-    channel.port1.onmessage = () => {
-      resolve();
-    };
+    channel.port1.onmessage = () => resolve();
     channel.port2.postMessage(null);
   });
 
@@ -105,11 +102,7 @@ function sentence(error: unknown): string {
 self.onmessage = ({ data }: MessageEvent<Request>): void => {
   const { id } = data;
   answer(data).then(
-    (value) => {
-      tell({ id, kind: 'done', value });
-    },
-    (error: unknown) => {
-      tell({ id, kind: 'failed', sentence: sentence(error) });
-    },
+    (value) => tell({ id, kind: 'done', value }),
+    (error: unknown) => tell({ id, kind: 'failed', sentence: sentence(error) }),
   );
 };

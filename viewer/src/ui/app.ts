@@ -49,9 +49,7 @@ export class App {
   private readonly isPage: boolean;
   /** Ends listeners and the loop when the viewer is taken away. */
   private readonly ended = new AbortController();
-  private readonly goTo = new GoTo((time) => {
-    this.seek(time);
-  });
+  private readonly goTo = new GoTo((time) => this.seek(time));
   private readonly transport: Transport;
   private readonly main = element('div', { class: 'main' });
   private readonly side = element('aside', { class: 'side' });
@@ -79,54 +77,31 @@ export class App {
     const starts = recordings.map(({ start }) => start);
     this.looks.routes = recordings.every(({ header }) => header.world.robots.length <= LARGE_TEAM);
     this.clock = new Clock(Math.min(...starts), Math.max(...recordings.map(({ end }) => end)));
-    const changed = (): void => {
-      this.change();
-    };
+    const changed = (): void => this.change();
     this.stages = recordings.map(
-      (recording, number) =>
-        new Stage(recording, this.looks, changed, (robot) => {
-          this.select(number, robot);
-        }),
+      (recording, number) => new Stage(recording, this.looks, changed, (robot) => this.select(number, robot)),
     );
     this.timeline = new Timeline(this.clock, recordings, changed);
     this.curves = new Curves(this.clock, recordings, changed);
     this.robotPanel = new RobotPanel(
-      (robot) => {
-        this.select(this.focus, robot);
-      },
-      () => {
-        this.follow();
-      },
-      new CoursePanel(
-        this.clock,
-        (time) => {
-          this.seek(time);
-        },
-        changed,
-      ),
+      (robot) => this.select(this.focus, robot),
+      () => this.follow(),
+      new CoursePanel(this.clock, (time) => this.seek(time), changed),
     );
-    this.eventPanel = new EventPanel((time) => {
-      this.seek(time);
-    });
-    this.roundPanel = new RoundPanel((time) => {
-      this.seek(time);
-    });
+    this.eventPanel = new EventPanel((time) => this.seek(time));
+    this.roundPanel = new RoundPanel((time) => this.seek(time));
     this.transport = this.makeTransport();
     root.replaceChildren(this.layout(list));
     this.listen();
     this.showViewpoints();
     this.showTabs();
     if (isPage) this.goToLink();
-    requestAnimationFrame((now) => {
-      this.tick(now);
-    });
+    requestAnimationFrame((now) => this.tick(now));
   }
 
   private listen(): void {
     const { signal } = this.ended;
-    const key = (event: KeyboardEvent): void => {
-      this.key(event);
-    };
+    const key = (event: KeyboardEvent): void => this.key(event);
     window.addEventListener('keydown', key, { signal });
     onThemeChange(() => {
       this.showViewpoints();
@@ -135,9 +110,7 @@ export class App {
     if (!this.isPage) return;
     const names = this.recordings.map(({ header }) => `${header.policy} ${header.scenario.name}`);
     document.title = names.join(' | ');
-    const goTo = (): void => {
-      this.goToLink();
-    };
+    const goTo = (): void => this.goToLink();
     window.addEventListener('hashchange', goTo, { signal });
   }
 
@@ -155,13 +128,9 @@ export class App {
     const stages = element('div', { class: `stages count-${Math.min(this.stages.length, 4)}` });
     stages.append(...this.stages.map(({ root }) => root));
     this.main.append(stages, this.transport.root, this.timeline.root);
-    const observer = new ResizeObserver(() => {
-      this.arrange(stages);
-    });
+    const observer = new ResizeObserver(() => this.arrange(stages));
     observer.observe(this.main);
-    this.ended.signal.addEventListener('abort', () => {
-      observer.disconnect();
-    });
+    this.ended.signal.addEventListener('abort', () => observer.disconnect());
     this.side.append(...(list ? [list] : []), this.tabs, this.robotPanel.root, this.roundPanel.root);
     this.side.append(this.curves.root, this.eventPanel.root, about(this.recordings[0]));
     return element('div', { class: 'app' }, this.main, this.side, this.help.root, this.goTo.root);
@@ -188,9 +157,9 @@ export class App {
     if (this.recordings.length < 2) return;
     this.tabs.replaceChildren(
       ...this.recordings.map(({ header }, number) => {
-        const tab = button(header.policy, `Show the panels of ${header.policy}, seed ${header.seed}`, () => {
-          this.focusOn(number);
-        });
+        const tab = button(header.policy, `Show the panels of ${header.policy}, seed ${header.seed}`, () =>
+          this.focusOn(number),
+        );
         tab.setAttribute('aria-pressed', String(number === this.focus));
         return tab;
       }),
@@ -199,9 +168,9 @@ export class App {
 
   private focusOn(number: number): void {
     this.focus = number;
-    this.stages.forEach(({ root }, i) => {
-      root.classList.toggle('focused', i === number && this.stages.length > 1);
-    });
+    this.stages.forEach(({ root }, i) =>
+      root.classList.toggle('focused', i === number && this.stages.length > 1),
+    );
     this.showTabs();
     this.showViewpoints();
     this.refresh();
@@ -209,9 +178,9 @@ export class App {
 
   private showViewpoints(): void {
     const { tasks } = this.recordings[this.focus].header.world;
-    const chips = viewpointChips(tasks, this.stages[this.focus].viewpoint, (viewpoint) => {
-      this.setViewpoint(viewpoint);
-    });
+    const chips = viewpointChips(tasks, this.stages[this.focus].viewpoint, (viewpoint) =>
+      this.setViewpoint(viewpoint),
+    );
     this.viewpoints.replaceChildren(...chips);
   }
 
@@ -247,9 +216,7 @@ export class App {
   private copyLink(): void {
     if (!this.isPage) return;
     showLink(this.link());
-    void copyLink().then(() => {
-      this.transport.sayCopied();
-    });
+    void copyLink().then(() => this.transport.sayCopied());
   }
 
   seek(time: number): void {
@@ -283,33 +250,15 @@ export class App {
   private keys(): KeyActions {
     const { clock, looks } = this;
     return {
-      toggle: () => {
-        this.toggle();
-      },
-      step: (seconds) => {
-        this.seek(clock.time + seconds);
-      },
-      toStart: () => {
-        this.seek(clock.start);
-      },
-      toEnd: () => {
-        this.seek(clock.end);
-      },
-      faster: (by) => {
-        this.faster(by);
-      },
-      toRound: (by) => {
-        this.toRound(by);
-      },
-      askTime: () => {
-        this.goTo.ask(clock.time);
-      },
-      copyLink: () => {
-        this.copyLink();
-      },
-      follow: () => {
-        this.follow();
-      },
+      toggle: () => this.toggle(),
+      step: (seconds) => this.seek(clock.time + seconds),
+      toStart: () => this.seek(clock.start),
+      toEnd: () => this.seek(clock.end),
+      faster: (by) => this.faster(by),
+      toRound: (by) => this.toRound(by),
+      askTime: () => this.goTo.ask(clock.time),
+      copyLink: () => this.copyLink(),
+      follow: () => this.follow(),
       routes: () => {
         looks.routes = !looks.routes;
       },
@@ -319,12 +268,8 @@ export class App {
       messages: () => {
         looks.messages = !looks.messages;
       },
-      team: () => {
-        this.select(this.focus, null);
-      },
-      help: () => {
-        this.help.toggle();
-      },
+      team: () => this.select(this.focus, null),
+      help: () => this.help.toggle(),
     };
   }
 
@@ -357,9 +302,7 @@ export class App {
     if (this.ended.signal.aborted) return;
     const seconds = Math.min((now - this.last) / 1000, 0.25);
     this.last = now;
-    requestAnimationFrame((next) => {
-      this.tick(next);
-    });
+    requestAnimationFrame((next) => this.tick(next));
     if (this.clock.advance(seconds) || this.isDirty) this.draw(now);
   }
 

@@ -82,9 +82,7 @@ export class CoursePanel {
     const what = element('td', {}, words(cause) + whom);
     const row = element('tr', {}, element('th', { scope: 'row' }, clockTime(from)), what);
     row.append(element('td', { class: 'value' }, seconds(stood)));
-    row.addEventListener('click', () => {
-      this.seek(from);
-    });
+    row.addEventListener('click', () => this.seek(from));
     return row;
   }
 

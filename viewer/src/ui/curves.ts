@@ -1,6 +1,7 @@
 /** The course of trials: rescuees delivered and levels over time, with a cursor. */
 
 import { inWords } from '../recording/words';
+import { drawLine } from '../draw/marks';
 import { groupColour, theme } from '../draw/theme';
 import type { Recording } from '../recording/recording';
 import type { Clock } from './clock';
@@ -58,17 +59,10 @@ export class Curves {
       changed,
     );
     for (const sheet of [this.rescued, this.levels]) {
-      const seek = (event: PointerEvent): void => {
-        const part = (event.offsetX - LEFT) / Math.max(sheet.width - LEFT - RIGHT, 1);
+      sheet.onDrag(({ offsetX }) => {
+        const part = (offsetX - LEFT) / Math.max(sheet.width - LEFT - RIGHT, 1);
         clock.seek(clock.start + part * (clock.end - clock.start));
         changed();
-      };
-      sheet.canvas.addEventListener('pointerdown', (event) => {
-        sheet.canvas.setPointerCapture(event.pointerId);
-        seek(event);
-      });
-      sheet.canvas.addEventListener('pointermove', (event) => {
-        if (sheet.canvas.hasPointerCapture(event.pointerId)) seek(event);
       });
     }
     this.root = element('section', { class: 'panel curves' });
@@ -110,10 +104,7 @@ export class Curves {
     context.lineWidth = 1;
     for (const value of [0, most / 2, most]) {
       context.strokeStyle = colours.faint;
-      context.beginPath();
-      context.moveTo(LEFT, y(value));
-      context.lineTo(sheet.width - RIGHT, y(value));
-      context.stroke();
+      drawLine(context, [LEFT, y(value)], [sheet.width - RIGHT, y(value)]);
       context.fillStyle = colours.soft;
       context.fillText(`${Number(value.toFixed(0))}${unit}`, LEFT - 5, y(value));
     }
@@ -150,9 +141,9 @@ export class Curves {
       context.setLineDash([]);
       context.globalAlpha = 1;
       if (number !== focus) return;
-      tasks.forEach((times, task) => {
-        now.push(swatch(groupColour(task)), `${countUntil(times, this.clock.time)} `);
-      });
+      tasks.forEach((times, task) =>
+        now.push(swatch(groupColour(task)), `${countUntil(times, this.clock.time)} `),
+      );
     });
     this.cursor(sheet, context);
     this.rescuedTold.replaceChildren(...now);
@@ -170,21 +161,17 @@ export class Curves {
         if (number === focus) {
           context.globalAlpha = 0.15;
           context.beginPath();
-          levels.forEach((level) => {
-            context.lineTo(this.x(sheet, level.time), y(level[of][0]));
-          });
-          [...levels].reverse().forEach((level) => {
-            context.lineTo(this.x(sheet, level.time), y(level[of][2]));
-          });
+          levels.forEach((level) => context.lineTo(this.x(sheet, level.time), y(level[of][0])));
+          [...levels]
+            .reverse()
+            .forEach((level) => context.lineTo(this.x(sheet, level.time), y(level[of][2])));
           context.fill();
         }
         context.globalAlpha = 1;
         context.lineWidth = number === focus ? 2 : 1.25;
         context.setLineDash(DASHES[number % DASHES.length]);
         context.beginPath();
-        levels.forEach((level) => {
-          context.lineTo(this.x(sheet, level.time), y(level[of][1]));
-        });
+        levels.forEach((level) => context.lineTo(this.x(sheet, level.time), y(level[of][1])));
         context.stroke();
         context.setLineDash([]);
       };

@@ -44,6 +44,18 @@ export class Sheet {
     }).observe(this.canvas);
   }
 
+  /** Acts where a pointer goes down, and wherever it is drawn from there. */
+  onDrag(act: (event: PointerEvent) => void): void {
+    const { canvas } = this;
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      act(event);
+    });
+    canvas.addEventListener('pointermove', (event) => {
+      if (canvas.hasPointerCapture(event.pointerId)) act(event);
+    });
+  }
+
   private measure(): void {
     this.ratio = Math.min(window.devicePixelRatio || 1, 2);
     this.width = this.canvas.clientWidth;

@@ -58,9 +58,7 @@ export class EventPanel {
     const table = element('table', { class: 'facts' });
     lines.forEach(([when, text], i) => {
       const row = element('tr', {}, element('th', { scope: 'row' }, when), element('td', {}, text));
-      row.addEventListener('click', () => {
-        this.seek(last[i].time);
-      });
+      row.addEventListener('click', () => this.seek(last[i].time));
       table.append(row);
     });
     const title = robot === null ? 'Events' : `Events of robot ${robot}`;

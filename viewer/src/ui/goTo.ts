@@ -8,15 +8,11 @@ export class GoTo {
   private readonly field = element('input', { name: 'time', autocomplete: 'off', size: '10' });
 
   constructor(private readonly seek: (time: number) => void) {
-    const go = button('Go', 'Go to this time (Enter)', () => {
-      this.go();
-    });
+    const go = button('Go', 'Go to this time (Enter)', () => this.go());
     const label = element('label', {}, 'Go to ', this.field);
     const hint = 'Seconds, or minutes and seconds: 128 or 2:08';
     this.root.append(element('p', { class: 'tools' }, label, go), element('p', { class: 'hint' }, hint));
-    this.field.addEventListener('input', () => {
-      this.field.setCustomValidity('');
-    });
+    this.field.addEventListener('input', () => this.field.setCustomValidity(''));
     this.field.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter') return;
       event.preventDefault(); // or the button that gets the focus back is pressed by the same key

@@ -39,9 +39,7 @@ export class Help {
   /** Help of a viewer; links are only for one that has a page of its own. */
   constructor(hasLinks: boolean) {
     const keys = KEYS.filter(([key]) => hasLinks || key !== 'c');
-    const close = button('Close', 'Close the help', () => {
-      this.root.close();
-    });
+    const close = button('Close', 'Close the help', () => this.root.close());
     this.root.append(element('h2', {}, 'Keys'), table(keys), element('h2', {}, 'Signs'), table(SIGNS), close);
     const touch = 'Drag to move the arena, pinch or turn the wheel to zoom, click twice to show all of it.';
     this.root.insertBefore(element('p', { class: 'hint' }, touch), close);

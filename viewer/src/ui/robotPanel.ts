@@ -90,9 +90,7 @@ export class RobotPanel {
       const chip = button(
         '',
         `Robot ${id}, ${robot.role.name}: ${doing(robot)}`,
-        () => {
-          this.select(id);
-        },
+        () => this.select(id),
         'member',
       );
       chip.append(swatch(groupColour(robot.task)), element('span', {}, `${id}`));
@@ -145,9 +143,7 @@ export class RobotPanel {
         this.follow,
         isFollowing ? 'on' : '',
       ),
-      button('Whole team', 'Show the whole team (Escape)', () => {
-        this.select(null);
-      }),
+      button('Whole team', 'Show the whole team (Escape)', () => this.select(null)),
     );
     this.state.replaceChildren(title, state, element('h3', {}, 'Needs'), needs, tools);
     this.root.dataset.robot = String(robot.id);

@@ -1,9 +1,10 @@
 /** How the team was grouped in a round: the groups, who would trust whom, and the runner-up. */
 
 import { inWords } from '../recording/words';
+import { drawLine } from '../draw/marks';
 import { groupColour, theme } from '../draw/theme';
 import type { Recording } from '../recording/recording';
-import type { Score, TimedDecision } from '../recording/types';
+import type { Point, Score, TimedDecision } from '../recording/types';
 import { Sheet, button, element, swatch } from './dom';
 
 /** The members of a group; of a large one, how many they are. */
@@ -47,9 +48,9 @@ export class RoundPanel {
   private pointed: [row: number, column: number] | null = null;
 
   constructor(private readonly seek: (time: number) => void) {
-    this.sheet = new Sheet({ class: 'matrix', role: 'img', 'aria-label': 'Relative Needs Entropy' }, () => {
-      this.drawMatrix();
-    });
+    this.sheet = new Sheet({ class: 'matrix', role: 'img', 'aria-label': 'Relative Needs Entropy' }, () =>
+      this.drawMatrix(),
+    );
     const point = (event: PointerEvent): void => {
       const { left, top } = this.sheet.canvas.getBoundingClientRect();
       this.pointed = this.cellAt(event.clientX - left, event.clientY - top);
@@ -90,15 +91,9 @@ export class RoundPanel {
 
   private head(recording: Recording, number: number): HTMLElement {
     const { decisions, header } = recording;
-    const go = (to: number): void => {
-      this.seek(decisions[to].step * header.dt_s);
-    };
-    const before = button('‹', 'The round before', () => {
-      go(number - 1);
-    });
-    const after = button('›', 'The next round', () => {
-      go(number + 1);
-    });
+    const go = (to: number): void => this.seek(decisions[to].step * header.dt_s);
+    const before = button('‹', 'The round before', () => go(number - 1));
+    const after = button('›', 'The next round', () => go(number + 1));
     before.disabled = number === 0;
     after.disabled = number + 1 >= decisions.length;
     const title = element('h2', {}, `Round ${decisions[number].question.round}`);
@@ -193,10 +188,8 @@ export class RoundPanel {
         if (nats === null) {
           context.strokeStyle = colours.soft;
           context.lineWidth = 1;
-          context.beginPath();
-          context.moveTo(left + j * cell + 0.25 * cell, top + (i + 0.75) * cell);
-          context.lineTo(left + (j + 0.75) * cell, top + (i + 0.25) * cell);
-          context.stroke();
+          const at = (x: number, y: number): Point => [left + (j + x) * cell, top + (i + y) * cell];
+          drawLine(context, at(0.25, 0.75), at(0.75, 0.25));
         }
       });
     });

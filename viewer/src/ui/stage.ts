@@ -124,9 +124,7 @@ export class Stage {
       this.pointers.set(event.pointerId, this.placeIn(event));
       if (this.pointers.size === 1) this.moved = 0;
     });
-    canvas.addEventListener('pointermove', (event) => {
-      this.drag(event);
-    });
+    canvas.addEventListener('pointermove', (event) => this.drag(event));
     const lift = (event: PointerEvent): void => {
       const place = this.pointers.get(event.pointerId);
       this.pointers.delete(event.pointerId);

@@ -1,5 +1,6 @@
 /** The time from beginning to end, with what happened on it: rounds, decisions, deadlocks, rests, losses. */
 
+import { drawLine, fillDisc } from '../draw/marks';
 import { theme } from '../draw/theme';
 import type { Happening, Recording } from '../recording/recording';
 import type { Clock } from './clock';
@@ -71,7 +72,7 @@ export class Timeline {
       );
     }
     this.root = element('div', { class: 'timeline' }, this.sheet.canvas, legend);
-    this.listen();
+    this.sheet.onDrag((event) => this.seek(event));
   }
 
   private x(time: number): number {
@@ -86,17 +87,6 @@ export class Timeline {
     this.changed();
   }
 
-  private listen(): void {
-    const { canvas } = this.sheet;
-    canvas.addEventListener('pointerdown', (event) => {
-      canvas.setPointerCapture(event.pointerId);
-      this.seek(event);
-    });
-    canvas.addEventListener('pointermove', (event) => {
-      if (canvas.hasPointerCapture(event.pointerId)) this.seek(event);
-    });
-  }
-
   draw(): void {
     const context = this.sheet.begin();
     const colours = theme();
@@ -107,9 +97,7 @@ export class Timeline {
     canvas.setAttribute('aria-valuetext', clockTime(this.clock.time));
     context.font = '11px system-ui, sans-serif';
     context.textBaseline = 'middle';
-    this.recordings.forEach((recording, lane) => {
-      this.drawLane(context, recording, 2 + 24 * lane);
-    });
+    this.recordings.forEach((recording, lane) => this.drawLane(context, recording, 2 + 24 * lane));
     context.fillStyle = colours.soft;
     const labels = Math.min(Math.max(this.sheet.width / 64, 2), 12);
     const length = this.clock.end - this.clock.start;
@@ -126,9 +114,7 @@ export class Timeline {
     const x = this.x(this.clock.time);
     context.fillStyle = colours.ink;
     context.fillRect(x - 1, 0, 2, height - 17);
-    context.beginPath();
-    context.arc(x, height - 17, 4.5, 0, 2 * Math.PI);
-    context.fill();
+    fillDisc(context, x, height - 17, 4.5);
   }
 
   private drawLane(context: CanvasRenderingContext2D, recording: Recording, top: number): void {
@@ -153,11 +139,7 @@ export class Timeline {
     };
     context.globalAlpha = 0.85;
     context.fillStyle = colours.hp;
-    marks(['RestStarted'], (x) => {
-      context.beginPath();
-      context.arc(x, middle + 5, 2.5, 0, 2 * Math.PI);
-      context.fill();
-    });
+    marks(['RestStarted'], (x) => fillDisc(context, x, middle + 5, 2.5));
     context.fillStyle = colours.groups[4];
     marks(['Deadlocked'], (x) => {
       context.beginPath();
@@ -179,12 +161,8 @@ export class Timeline {
     context.strokeStyle = colours.ink;
     context.lineWidth = 1.75;
     marks(LOSSES, (x) => {
-      context.beginPath();
-      context.moveTo(x - 3.5, middle - 3.5);
-      context.lineTo(x + 3.5, middle + 3.5);
-      context.moveTo(x + 3.5, middle - 3.5);
-      context.lineTo(x - 3.5, middle + 3.5);
-      context.stroke();
+      drawLine(context, [x - 3.5, middle - 3.5], [x + 3.5, middle + 3.5]);
+      drawLine(context, [x + 3.5, middle - 3.5], [x - 3.5, middle + 3.5]);
     });
   }
 }

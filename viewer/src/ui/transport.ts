@@ -31,12 +31,8 @@ export class Transport {
     this.play = button('▶', 'Play or pause (space)', toggle, 'play');
     this.time = button('', 'Go to a time (g)', askTime, 'time');
     this.link = button('Link', 'Copy a link to this moment and robot (c)', copyLink, 'link');
-    const slower = button('−', 'Slower (-)', () => {
-      faster(-1);
-    });
-    const quicker = button('+', 'Faster (+)', () => {
-      faster(1);
-    });
+    const slower = button('−', 'Slower (-)', () => faster(-1));
+    const quicker = button('+', 'Faster (+)', () => faster(1));
     this.root.append(this.play, slower, this.speed, quicker, this.time, element('span', { class: 'gap' }));
     this.root.append(viewpoints, ...(hasLinks ? [this.link] : []), button('?', 'Help (?)', help));
   }

@@ -12,9 +12,7 @@ export function viewpointChips(
 ): HTMLElement[] {
   const of = (text: string, viewpoint: number | null, colour: string | null): HTMLElement => {
     const title = viewpoint === null ? 'Show the world as it is' : `Show what is known to ${text}`;
-    const act = (): void => {
-      choose(viewpoint);
-    };
+    const act = (): void => choose(viewpoint);
     const chip = button('', title, act, 'chip');
     if (colour) chip.append(swatch(colour));
     chip.append(element('span', {}, text));

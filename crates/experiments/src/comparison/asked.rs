@@ -99,7 +99,6 @@ impl Asked {
 
     /// The margins of the metrics that are compared, in a sentence that says who named them; empty without
     /// any.
-    #[must_use]
     pub fn margins_in_words(&self, experiment: &Experiment) -> String {
         let of = |margins: &[(usize, f64)]| {
             let asked = margins.iter().filter(|(place, _)| self.metrics.contains(place));
@@ -117,7 +116,6 @@ impl Asked {
     }
 
     /// The same comparisons as a [`Choice`].
-    #[must_use]
     pub fn choice(&self) -> Choice<'_> {
         Choice {
             baseline: self.baseline.as_deref(),

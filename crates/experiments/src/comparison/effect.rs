@@ -46,14 +46,12 @@ pub struct Effect {
 
 impl Effect {
     /// Whether the change shows after correction.
-    #[must_use]
     pub fn is_found(&self) -> bool {
         is_shown(self.p_holm, self.interval)
     }
 
     /// The change and the ends of its interval, in percent of the mean in the reference. `None` if that
     /// mean is not above zero.
-    #[must_use]
     pub fn in_percent(&self) -> Option<[f64; 3]> {
         let [there, _] = self.means.filter(|[there, _]| *there > 0.0)?;
         let [low, high] = self.interval?;

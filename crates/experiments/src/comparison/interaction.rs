@@ -50,7 +50,6 @@ pub struct Interaction {
 
 impl Interaction {
     /// Whether the change shows after correction.
-    #[must_use]
     pub fn is_found(&self) -> bool {
         is_shown(self.p_holm, self.interval)
     }

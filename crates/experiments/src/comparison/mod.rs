@@ -28,7 +28,6 @@ pub use pairs::pairs_of;
 pub use sums::moments_of;
 
 /// The same warning for the changes along axes: of means, or of differences.
-#[must_use]
 pub fn limit_of_changes(effects: &[Effect], interactions: &[Interaction]) -> Option<String> {
     let of_effects = || effects.iter().filter(|effect| effect.p.is_some()).map(|effect| effect.n);
     let of_interactions = || interactions.iter().filter(|one| one.p.is_some()).map(|one| one.n);

@@ -7,7 +7,6 @@ use super::sums::sums_of;
 use crate::sweep::folder::{Folder, Measured};
 
 /// The values of two cells in one metric, paired by seed.
-#[must_use]
 pub fn pairs_of(folder: &Folder, metric: usize, [a, b]: [Cell; 2]) -> Pairs {
     let (mut pairs, mut repeats) = (Pairs::default(), Repeats::default());
     for trial in folder.experiment().trials_of(a.0, folder.manifest().shard) {

@@ -9,7 +9,6 @@ use crate::sweep::folder::Folder;
 /// Mean and standard deviation of a metric in a cell. For a cost per rescuee they are those of the linearised
 /// values: the mean is the sum of the costs over the sum of the rescuees, so that trials without rescuees
 /// count, and a total lies between its tasks but for what robots spent outside groups.
-#[must_use]
 pub fn moments_of(folder: &Folder, cell: Cell, metric: usize) -> Moments {
     let (experiment, (case, policy)) = (folder.experiment(), cell);
     let Some([cost, count]) = experiment.metrics.sums(metric) else {

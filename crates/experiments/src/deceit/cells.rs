@@ -1,6 +1,7 @@
 //! The cells of a sweep of lies: which cases have which lie and how many liars.
 
 use rne_core::arrow::Written;
+use serde::Serialize;
 
 use crate::experiment::{Experiment, PolicySpec};
 use crate::{Failure, refuse};
@@ -15,7 +16,7 @@ const DRAW: &str = "RANDOM";
 pub(super) const DEAF: &str = "DIS";
 
 /// A difference of paired trials.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Difference {
     /// Its mean; `None` without pairs.
     pub mean: Option<f64>,

@@ -8,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use rne_core::{Asked, Assignment, Deadline, Member, PolicyError, Question, Session, TrialStart};
+use serde::Serialize;
 use statistics::{Moments, cautious};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
@@ -18,7 +19,7 @@ use crate::regret::{PlayedDecision, PlayedTrial, StudyFolder};
 use crate::{Failure, refuse};
 
 /// What the decisions of a policy were worth under one lie.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Worth {
     /// Label of the policy.
     pub policy: String,

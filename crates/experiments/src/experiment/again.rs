@@ -14,7 +14,6 @@ const TIMES_ASKED: usize = 3;
 
 impl Experiment {
     /// The command that runs one trial again, in the folder of the results.
-    #[must_use]
     pub fn replay_command(&self, key: &TrialKey) -> String {
         let policy = &self.policies[key.policy];
         let axes = self.axes.iter().zip(&self.cases[key.case].values);
@@ -36,7 +35,6 @@ impl Experiment {
     /// The first round in which the policy gives another answer than in the trial when it is asked the same
     /// questions a few times again, each time in a session of its own. `None` if every answer is the same, or if the policy does not answer from
     /// the question.
-    #[must_use]
     pub fn answers_otherwise(&self, key: &TrialKey, record: &TrialRecord) -> Option<u32> {
         let spec = &self.policies[key.policy];
         if !spec.is_of_question() {

@@ -23,7 +23,6 @@ pub struct Cost {
 
 impl Cost {
     /// The cost of one trial.
-    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let sampled: u32 = scenario.tasks.iter().map(|task| task.sampled.debris).sum();
         let bodies = scenario.robots() as usize + scenario.obstacles().len() + sampled as usize;
@@ -31,7 +30,6 @@ impl Cost {
     }
 
     /// Bodies times steps.
-    #[must_use]
     pub fn work(&self) -> f64 {
         self.bodies as f64 * self.steps as f64 * self.trials
     }

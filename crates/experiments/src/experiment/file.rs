@@ -72,7 +72,6 @@ pub(super) struct SweepFile {
 }
 
 /// The JSON Schema of a sweep file.
-#[must_use]
 pub fn sweep_schema() -> serde_json::Value {
     schemars::schema_for!(SweepFile).into()
 }

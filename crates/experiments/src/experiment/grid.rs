@@ -27,7 +27,6 @@ pub const VARIANT: &str = "variant";
 
 impl Axis {
     /// The settings for one of the axis's values: paths and values in RON.
-    #[must_use]
     pub fn settings<'a>(&'a self, value: &'a str) -> Vec<(&'a str, &'a str)> {
         if self.variants.is_empty() {
             return vec![(&self.path, value)];

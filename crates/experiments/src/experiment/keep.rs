@@ -5,44 +5,30 @@ use std::str::FromStr;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What a sweep keeps of each trial. Each keeps what those before it keep.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-pub enum Keep {
-    /// Its row of `trials.csv`: every metric.
-    Trials,
-    /// Its record with all decisions, and `rounds.csv`.
-    Rounds,
-    /// `robots.csv` as well.
-    Robots,
-    /// `groups.csv`, `series.csv`, `hashes.csv` with the hash chain, `links.csv` with the messages of each
-    /// link, and what policies say of their decisions.
-    #[default]
-    Groups,
+ron_tree::named! {
+    /// What a sweep keeps of each trial. Each keeps what those before it keep.
+    #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+    pub enum Keep {
+        /// Its row of `trials.csv`: every metric.
+        Trials = "trials",
+        /// Its record with all decisions, and `rounds.csv`.
+        Rounds = "rounds",
+        /// `robots.csv` as well.
+        Robots = "robots",
+        /// `groups.csv`, `series.csv`, `hashes.csv` with the hash chain, `links.csv` with the messages of each
+        /// link, and what policies say of their decisions.
+        #[default]
+        Groups = "groups",
+    }
 }
 
 impl Keep {
-    /// All, from the least to the most.
-    pub const ALL: [Self; 4] = [Self::Trials, Self::Rounds, Self::Robots, Self::Groups];
-
-    /// Its name on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Trials => "trials",
-            Self::Rounds => "rounds",
-            Self::Robots => "robots",
-            Self::Groups => "groups",
-        }
-    }
-
     /// Whether the records of trials are kept, with rounds and decisions.
-    #[must_use]
     pub fn has_records(self) -> bool {
         self >= Self::Rounds
     }
 
     /// Whether hash chains are kept.
-    #[must_use]
     pub fn has_chains(self) -> bool {
         self >= Self::Groups
     }

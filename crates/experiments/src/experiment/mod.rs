@@ -231,14 +231,12 @@ impl Experiment {
 
     /// A hash of everything that decides the numbers of a trial, in 32 hexadecimal digits: the resolved
     /// scenario, the policy with its options, the seed, and the program.
-    #[must_use]
     pub fn id(&self, key: &TrialKey) -> String {
         let rest = self.ids[key.case][key.policy];
         format!("{:032x}", xxh3_128(format!("{rest:032x} {}", key.seed).as_bytes()))
     }
 
     /// The key of a trial: its place, its seed, and its policy's label.
-    #[must_use]
     pub fn key(&self, place: Place) -> TrialKey {
         let (case, policy, trial) = place;
         TrialKey { case, policy, trial, seed: self.seed(trial), label: self.policies[policy].label.clone() }
@@ -265,7 +263,6 @@ impl Experiment {
     }
 
     /// Number of trials that [`Experiment::run`] simulated instead of taking them over.
-    #[must_use]
     pub fn simulated(&self) -> usize {
         self.shared.simulated()
     }
@@ -310,7 +307,6 @@ impl Experiment {
     }
 
     /// Largest number of trials for which there are seeds.
-    #[must_use]
     pub fn most_trials(&self) -> u32 {
         match &self.seeds {
             Seeds::From(_) => u32::MAX,
@@ -319,7 +315,6 @@ impl Experiment {
     }
 
     /// Seed of a trial; trials are numbered from 1.
-    #[must_use]
     pub fn seed(&self, trial: u32) -> u64 {
         match &self.seeds {
             Seeds::From(first) => first.wrapping_add(u64::from(trial - 1)),
@@ -328,7 +323,6 @@ impl Experiment {
     }
 
     /// A case's values of the axes, followed by a colon; empty without axes.
-    #[must_use]
     pub fn describe(&self, case: &Case) -> String {
         let places: Vec<String> = self
             .axes

@@ -12,7 +12,6 @@ use crate::oracle;
 use crate::{Failure, refuse};
 
 /// A registry with the oracle, unless it has one of its own.
-#[must_use]
 pub fn with_oracle(mut registry: Registry) -> Registry {
     // A caller's policy with the oracle's name stays.
     let _ = registry.add(oracle::kind());
@@ -71,27 +70,23 @@ impl PolicySpec {
     }
 
     /// The policy.
-    #[must_use]
     pub fn made(&self) -> &MadePolicy {
         &self.made
     }
 
     /// Whether it answers from the question; a policy that plays in the trial that asks does not.
-    #[must_use]
     pub fn is_of_question(&self) -> bool {
         !self.made.it.needs_trial()
     }
 
     /// The trust measure that explains this policy's decisions: the one that the registry has chosen, or
     /// else the one with the policy's name and options, by which it groups. `None` if there is neither.
-    #[must_use]
     pub fn own_measure<'m>(&'m self, registry: &'m Registry) -> Option<&'m MadeMeasure> {
         registry.chosen_measure().or(self.measure.as_ref())
     }
 
     /// The trust measure for a look at this policy's decisions: [its own](Self::own_measure), or else the
     /// first of the registry. `None` if the registry has none.
-    #[must_use]
     pub fn measure(&self, registry: &Registry) -> Option<MadeMeasure> {
         self.own_measure(registry).cloned().or_else(|| registry.a_measure())
     }
@@ -120,19 +115,16 @@ impl PolicySpec {
     }
 
     /// The policy without the label; the text reads to the same policy.
-    #[must_use]
     pub fn plain(&self) -> String {
         behind(&plain(&self.name, &self.options), self.guide.as_deref())
     }
 
     /// The written options, with their values in RON.
-    #[must_use]
     pub fn options(&self) -> &[(String, String)] {
         &self.options
     }
 
     /// The policy as text; it reads to the same policy.
-    #[must_use]
     pub fn written(&self) -> &str {
         &self.written
     }
@@ -199,7 +191,6 @@ fn parse_options(text: &str) -> Result<Vec<(String, String)>, Failure> {
 }
 
 /// The entries of a comma-separated list. Commas inside brackets and quotes do not separate.
-#[must_use]
 pub fn split_list(text: &str) -> Vec<&str> {
     let (mut depth, mut is_text, mut is_escaped) = (0_i32, false, false);
     let splits = |c: char| {

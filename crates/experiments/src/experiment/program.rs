@@ -48,7 +48,6 @@ impl Program {
     }
 
     /// The version, and one hash of the sources that decide the trials of these policies.
-    #[must_use]
     pub fn digest(&self) -> Digest {
         let text = format!("{} {}", self.source, self.policies.join(" "));
         Digest { version: self.version.clone(), source: format!("{:016x}", xxh3_64(text.as_bytes())) }

@@ -13,7 +13,6 @@ use super::policy::PolicySpec;
 impl Experiment {
     /// What is doubtful about policies in the scenarios of the sweep, each once: estimators that have nothing to
     /// judge, or need more raters of a robot than a group has.
-    #[must_use]
     pub fn doubts(&self) -> BTreeSet<String> {
         let of_case = |scenario: &Scenario| -> Vec<String> {
             self.policies.iter().filter_map(|policy| doubt(policy, scenario)).collect()

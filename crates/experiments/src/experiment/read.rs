@@ -59,7 +59,6 @@ pub(crate) fn check_form(text: &str, path: &Path) -> Result<(), Failure> {
 }
 
 /// The sweep file that belongs to a scenario: `paper.sweep.ron` beside `paper.ron`.
-#[must_use]
 pub fn companion(scenario: &Path) -> PathBuf {
     scenario.with_extension("sweep.ron")
 }

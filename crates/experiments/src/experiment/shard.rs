@@ -71,7 +71,6 @@ impl Experiment {
     }
 
     /// Number of trials in a shard, or in the whole sweep.
-    #[must_use]
     pub fn count(&self, shard: Option<Shard>) -> usize {
         let seeds = match shard {
             None => self.seeds_of_cases(),
@@ -81,7 +80,6 @@ impl Experiment {
     }
 
     /// Number of seeds of all cases together. With more shards than that, some shard would have no trial.
-    #[must_use]
     pub fn seeds_of_cases(&self) -> usize {
         self.cases.len() * self.trials as usize
     }
@@ -92,7 +90,6 @@ impl Experiment {
     }
 
     /// Whether the sweep, or a shard of it, has a trial at this place with this seed.
-    #[must_use]
     pub fn has(&self, place: Place, seed: u64, shard: Option<Shard>) -> bool {
         let (case, policy, trial) = place;
         let cases = self.cases.len();

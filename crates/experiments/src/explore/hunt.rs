@@ -50,7 +50,6 @@ pub struct Trail {
 
 impl Trail {
     /// All candidates, in the order in which they were evaluated; the first is the start.
-    #[must_use]
     pub fn candidates(&self) -> &[Candidate] {
         &self.candidates
     }
@@ -84,7 +83,6 @@ impl Hunt {
 
     /// The candidate with the lowest or the highest outcome, as the search wants it; the earliest of
     /// equals.
-    #[must_use]
     pub fn best<'a>(&self, trail: &'a Trail) -> Option<(&'a Candidate, f64)> {
         let found = trail.candidates.iter();
         let found = found.filter_map(|candidate| Some((candidate, *candidate.outcome.as_ref().ok()?)));

@@ -83,7 +83,6 @@ impl Parameter {
     }
 
     /// The value at a place. [0, 1] is the range; beyond it, the range is mirrored again and again.
-    #[must_use]
     pub fn value(&self, place: f64) -> f64 {
         let folded = place.rem_euclid(2.0);
         let unit = if folded > 1.0 { 2.0 - folded } else { folded };
@@ -97,13 +96,11 @@ impl Parameter {
     }
 
     /// The place of a value, kept at least a tenth of the range away from the ends.
-    #[must_use]
     pub fn place(&self, value: f64) -> f64 {
         self.place_of(value).clamp(0.1, 0.9)
     }
 
     /// The place of a value in the range, from 0 to 1. A value outside has the place of the nearest end.
-    #[must_use]
     pub fn place_of(&self, value: f64) -> f64 {
         let value = value.clamp(self.low, self.high);
         if self.is_log {
@@ -114,7 +111,6 @@ impl Parameter {
     }
 
     /// The ends of the parameter's range.
-    #[must_use]
     pub fn ends(&self) -> [f64; 2] {
         [self.low, self.high]
     }
@@ -128,7 +124,6 @@ impl Parameter {
     }
 
     /// Whether one of the parameter's fields is at this path or within it.
-    #[must_use]
     pub fn is_of(&self, path: &str) -> bool {
         let is_within = |field: &str| {
             field.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
@@ -137,14 +132,12 @@ impl Parameter {
     }
 
     /// Whether a value is within a hundredth of the range of one of its ends.
-    #[must_use]
     pub fn is_at_end(&self, value: f64) -> bool {
         let place = self.place_of(value);
         !(0.01..=0.99).contains(&place)
     }
 
     /// What a search has found for the parameter, in words.
-    #[must_use]
     pub fn found(&self, value: f64) -> String {
         let end = if self.is_at_end(value) { "; it is at the end of its range" } else { "" };
         format!("{} = {value} (searched from {} to {}{end})", self.name, self.low, self.high)
@@ -162,7 +155,6 @@ impl Parameter {
     }
 
     /// A message if one of the parameter's fields takes whole numbers only.
-    #[must_use]
     pub fn whole_numbers(&self, base: &ScenarioFile) -> Option<String> {
         let takes = |path: &str, value: &str| base.clone().set(path, value).is_ok();
         let field = self.fields.iter().find(|(path, _)| takes(path, "1") && !takes(path, "1.5"));

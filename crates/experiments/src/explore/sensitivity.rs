@@ -103,7 +103,6 @@ pub const CHANCE: &str = "chance (other seeds)";
 
 impl Row {
     /// The value by which rows are ranked: mu*, or the total index.
-    #[must_use]
     pub fn size(&self) -> f64 {
         match self.index {
             Index::Effects { effects, .. } => effects.size.value,
@@ -113,7 +112,6 @@ impl Row {
     }
 
     /// Whether this is the row of chance.
-    #[must_use]
     pub fn is_chance(&self) -> bool {
         self.parameter == CHANCE
     }
@@ -121,7 +119,6 @@ impl Row {
     /// Whether the index is distinguishable from chance. For effects, the mean effect's interval excludes
     /// zero, or the effects are larger than those of other seeds. For shares, the first-order interval is
     /// above zero.
-    #[must_use]
     pub fn is_shown(&self) -> bool {
         let excludes_zero = |known: &Known| known.interval.is_some_and(|[low, high]| low > 0.0 || high < 0.0);
         let is_above = |known: &Known| known.interval.is_some_and(|[low, _]| low > 0.0);
@@ -136,7 +133,6 @@ impl Row {
 
 impl Evaluations {
     /// Number of evaluated points in the first `blocks` blocks.
-    #[must_use]
     pub fn count(&self, blocks: u32) -> usize {
         self.known.range(..(blocks, 0)).count()
     }
@@ -154,7 +150,6 @@ impl Sensitivity {
     }
 
     /// Number of points in this many blocks.
-    #[must_use]
     pub fn count(&self, blocks: u32) -> usize {
         blocks as usize * self.points(0).len()
     }
@@ -240,7 +235,6 @@ impl Sensitivity {
 
     /// Number of failed points in the first `blocks` blocks, and the first failure's reason; `None` without
     /// failures.
-    #[must_use]
     pub fn failures(&self, blocks: u32, evaluations: &Evaluations) -> Option<(usize, String)> {
         let mut reasons = evaluations.known.range(..(blocks, 0)).filter_map(|(_, v)| v.as_ref().err());
         let first = reasons.next()?.to_string();
@@ -249,7 +243,6 @@ impl Sensitivity {
 
     /// The indices of all outcomes from the first `blocks` blocks. Each outcome's parameters are in the
     /// order of their size, with chance last. Blocks with an undefined point are left out.
-    #[must_use]
     pub fn indices(&self, blocks: u32, evaluations: &Evaluations) -> Vec<Row> {
         let outcomes = self.space.outcomes.iter().enumerate();
         let of = |(place, outcome): (usize, &Outcome)| {

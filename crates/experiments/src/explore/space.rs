@@ -37,7 +37,6 @@ pub struct Outcome {
 
 impl Outcome {
     /// A name for a column: `RNE - DIS: rescuees.total`.
-    #[must_use]
     pub fn name(&self) -> String {
         format!("{}: {}", self.who, self.what)
     }
@@ -214,7 +213,6 @@ impl Space {
 
     /// The outcomes at these points, each from the experiment's number of trials, on the threads of the
     /// calling pool. `None` if `stop` was set.
-    #[must_use]
     pub fn evaluate(&self, points: &[Point], stop: &AtomicBool) -> Option<Vec<Values>> {
         let scenarios: Vec<Result<Scenario, PointError>> =
             points.iter().map(|point| self.scenario(&point.values)).collect();

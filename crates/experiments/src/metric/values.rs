@@ -12,7 +12,6 @@ impl Values {
     ///
     /// # Panics
     /// The catalogue has no such place.
-    #[must_use]
     pub fn get(&self, metric: usize) -> Option<f64> {
         Some(self.0[metric]).filter(|value| !value.is_nan())
     }

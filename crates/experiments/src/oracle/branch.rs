@@ -25,7 +25,6 @@ pub struct Outcome {
 
 impl Outcome {
     /// The totals of all tasks, with the costs outside any group.
-    #[must_use]
     pub fn total(&self) -> TaskTotals {
         let [energy, hp] = self.ungrouped;
         let start = TaskTotals { energy, hp, ..TaskTotals::default() };
@@ -212,7 +211,6 @@ impl Branch {
     }
 
     /// The record of the trial up to now.
-    #[must_use]
     pub fn finish(self) -> TrialRecord {
         self.trial.finish()
     }

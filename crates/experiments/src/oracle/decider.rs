@@ -73,7 +73,6 @@ pub struct Oracle {
 }
 
 /// The oracle's entry in a registry.
-#[must_use]
 pub fn kind() -> PolicyKind {
     let about = "the assignment of which most comes in the round, known by playing them all";
     PolicyKind::made(NAME, about, |options: OracleOptions, registry| {

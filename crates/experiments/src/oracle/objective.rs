@@ -75,7 +75,6 @@ impl Objective {
     }
 
     /// All objectives for tasks of these names.
-    #[must_use]
     pub fn all(tasks: &[String]) -> Vec<Self> {
         let of = |quantity: usize| {
             let name = QUANTITIES[quantity].name;
@@ -94,13 +93,11 @@ impl Objective {
     }
 
     /// Its name.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// In words, with the unit.
-    #[must_use]
     pub fn title(&self) -> String {
         let Quantity { title, unit, .. } = QUANTITIES[self.quantity];
         let part = self.name.split_once('.').map_or(String::new(), |(_, part)| format!(" {part}"));
@@ -109,13 +106,11 @@ impl Objective {
     }
 
     /// Whether less is better.
-    #[must_use]
     pub fn is_cost(&self) -> bool {
         QUANTITIES[self.quantity].is_cost
     }
 
     /// Its value; `None` where it is undefined, such as a cost per rescuee without rescuees.
-    #[must_use]
     pub fn value(&self, outcome: &Outcome) -> Option<f64> {
         let totals = match self.task {
             Some(task) => *outcome.tasks.get(task)?,
@@ -125,7 +120,6 @@ impl Objective {
     }
 
     /// Its value, with the sign chosen so that more is better.
-    #[must_use]
     pub fn score(&self, outcome: &Outcome) -> Option<f64> {
         self.value(outcome).map(|value| if self.is_cost() { -value } else { value })
     }

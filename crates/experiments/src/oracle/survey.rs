@@ -55,7 +55,6 @@ pub struct Standing {
 
 impl Survey {
     /// The outcome of an assignment, if it was played.
-    #[must_use]
     pub fn of(&self, assignment: &Assignment) -> Option<&Outcome> {
         let found = self.evaluations.iter().find(|evaluation| evaluation.assignment == *assignment);
         found.map(|evaluation| &evaluation.outcome)
@@ -63,7 +62,6 @@ impl Survey {
 
     /// The evaluations for which an objective is defined, the best first. Equal ones are in the order in
     /// which they were played.
-    #[must_use]
     pub fn ranked(&self, objective: &Objective) -> Vec<&Evaluation> {
         let mut scored: Vec<(f64, &Evaluation)> = self
             .evaluations
@@ -75,7 +73,6 @@ impl Survey {
     }
 
     /// The standing of an assignment; `None` if it was not played or has no value.
-    #[must_use]
     pub fn standing(&self, objective: &Objective, assignment: &Assignment) -> Option<Standing> {
         let outcome = self.of(assignment)?;
         let score = objective.score(outcome)?;
@@ -89,7 +86,6 @@ impl Survey {
     }
 
     /// Values of the best and of the worst assignment; `None` if no assignment has a value.
-    #[must_use]
     pub fn range(&self, objective: &Objective) -> Option<[f64; 2]> {
         let ranked = self.ranked(objective);
         let value = |evaluation: &&Evaluation| objective.value(&evaluation.outcome);
@@ -97,7 +93,6 @@ impl Survey {
     }
 
     /// Mean value over all played assignments that have one: the expected value of a fair draw.
-    #[must_use]
     pub fn mean(&self, objective: &Objective) -> Option<f64> {
         let values: Vec<f64> =
             self.evaluations.iter().filter_map(|evaluation| objective.value(&evaluation.outcome)).collect();

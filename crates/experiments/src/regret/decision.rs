@@ -37,14 +37,12 @@ pub struct Sample {
 
 impl PlayedDecision {
     /// The question as it would have been if all members had been reported as they were.
-    #[must_use]
     pub fn true_question(&self) -> Question {
         let members = self.truth.as_ref().unwrap_or(&self.question.members).clone();
         Question { members, ..self.question.clone() }
     }
 
     /// The assignments and their outcomes.
-    #[must_use]
     pub fn survey(&self) -> Survey {
         let (all, coverage) = match &self.sample {
             None => (assignments::all(&self.question), Coverage::All),

@@ -32,14 +32,12 @@ pub const FEATURES: [Feature; 9] = [
 
 impl Feature {
     /// Name in words, with this trust measure.
-    #[must_use]
     pub fn name(&self, measure: &MadeMeasure) -> String {
         self.name.replace("{}", &measure.label)
     }
 }
 
 /// The value of each feature for each assignment; `None` where it is undefined.
-#[must_use]
 pub fn values(
     question: &Question,
     assignments: &[&Assignment],

@@ -32,7 +32,6 @@ pub struct DecisionKey {
 impl DecisionKey {
     /// The path of the decision's file. The name has what users look for, and a hash of everything that
     /// decides numbers.
-    #[must_use]
     pub fn path(&self, folder: &Path) -> PathBuf {
         let Self { scenario, seed, base, round, .. } = self;
         let hash = xxh3_64(self.decides().as_bytes());
@@ -103,14 +102,12 @@ impl OutcomeLog {
     }
 
     /// The outcome of an assignment, if it was played.
-    #[must_use]
     pub fn get(&self, then: Option<&str>, assignment: &Assignment) -> Option<&Outcome> {
         self.known.get(&(then.map(str::to_owned), assignment.clone()))
     }
 
     /// How far the outcomes go: `None` for the end of the round, or the policy that decided the rest of the
     /// trial.
-    #[must_use]
     pub fn horizons(&self) -> BTreeSet<Option<String>> {
         self.known.keys().map(|(then, _)| then.clone()).collect()
     }

@@ -159,7 +159,6 @@ impl StudyFolder {
     }
 
     /// Numbers of the missing trials.
-    #[must_use]
     pub fn missing(&self) -> Vec<u32> {
         let is_there = |number: &u32| self.trials.iter().any(|trial| trial.trial == *number);
         (1..=self.study.seeds.len() as u32).filter(|number| !is_there(number)).collect()
@@ -194,7 +193,6 @@ impl StudyFolder {
     }
 
     /// Path of the folder.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }

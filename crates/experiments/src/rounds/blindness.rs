@@ -26,7 +26,6 @@ pub struct Pair {
 
 impl Pair {
     /// Distance between their levels (energy, HP), in percent points.
-    #[must_use]
     pub fn apart(&self) -> f64 {
         apart(&self.from, &self.to)
     }
@@ -70,7 +69,6 @@ pub struct Example {
 impl Blindness {
     /// The share of comparisons between pairs of one role and round in which the pair with the nearer
     /// levels has the higher distrust.
-    #[must_use]
     pub fn misjudged(&self) -> Option<f64> {
         (self.compared > 0).then(|| self.misjudged as f64 / self.compared as f64)
     }

@@ -19,7 +19,6 @@ pub struct GroupLevels {
 
 /// The mean levels of one policy for each round number, over the rounds in which each task's group had
 /// members.
-#[must_use]
 pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
     let mut by_round: BTreeMap<u32, Vec<Vec<[f64; 2]>>> = BTreeMap::new();
     for round in rounds {
@@ -43,7 +42,6 @@ pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
 }
 
 /// Mean energy and HP of a task's group; `None` if the group is empty.
-#[must_use]
 pub fn mean_levels(round: &Round, task: rne_core::TaskId) -> Option<[f64; 2]> {
     let members: Vec<_> = round.group(task).collect();
     let mean = |value: fn(&rne_core::Member) -> f64| {

@@ -67,7 +67,6 @@ impl Round {
     }
 
     /// The question as it would have been if all members had been reported as they were.
-    #[must_use]
     pub fn true_question(&self) -> Question {
         Question { members: self.team.clone(), ..self.question.clone() }
     }
@@ -84,7 +83,6 @@ impl Round {
     }
 
     /// The tasks whose groups have members, from the hardest to the easiest.
-    #[must_use]
     pub fn tasks(&self) -> Vec<TaskId> {
         let has_members = |task: &TaskId| !self.decision.assignment.of(*task).is_empty();
         self.question.hardest_first().into_iter().filter(has_members).collect()
@@ -92,7 +90,6 @@ impl Round {
 
     /// Whether an assignment equals this round's: first with the same tasks, second as a split, regardless
     /// of which group takes which task.
-    #[must_use]
     pub fn is_as(&self, assignment: &Assignment) -> [bool; 2] {
         let sorted = |assignment: &Assignment| {
             let mut groups = assignment.groups.clone();

@@ -34,13 +34,11 @@ impl Share {
     }
 
     /// The observed share; `None` without observations.
-    #[must_use]
     pub fn share(&self) -> Option<f64> {
         (self.of > 0.0).then(|| self.times / self.of)
     }
 
     /// The share expected by chance; `None` without observations.
-    #[must_use]
     pub fn chance(&self) -> Option<f64> {
         (self.of > 0.0).then(|| self.by_chance / self.of)
     }
@@ -93,7 +91,6 @@ impl SortingAgreement {
     }
 
     /// Number of rounds with two groups.
-    #[must_use]
     pub fn rounds(&self) -> usize {
         self.split.of as usize
     }

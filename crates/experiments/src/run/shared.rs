@@ -81,7 +81,6 @@ impl SharedTrials {
     }
 
     /// Number of trials that were simulated instead of reused.
-    #[must_use]
     pub fn simulated(&self) -> usize {
         self.simulated.load(Ordering::Relaxed)
     }

@@ -65,7 +65,6 @@ impl Trial {
     }
 
     /// Rescuees delivered up to a time in seconds, from each task.
-    #[must_use]
     pub fn delivered(&self, time_s: f64) -> Vec<usize> {
         self.deliveries.iter().map(|times| times.partition_point(|at| *at <= time_s)).collect()
     }
@@ -85,35 +84,21 @@ pub struct Fault {
     pub reason: String,
 }
 
-/// Kinds of faults.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FaultKind {
-    /// The trial reported it: an invariant was violated, a policy failed, or the physics broke down.
-    Failed,
-    /// The program has a defect.
-    Panicked,
-    /// The trial exceeded the time limit.
-    TimedOut,
-}
-
-impl FaultKind {
-    /// All kinds.
-    pub const ALL: [Self; 3] = [Self::Failed, Self::Panicked, Self::TimedOut];
-
-    /// Name as one word, for tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Failed => "failed",
-            Self::Panicked => "panicked",
-            Self::TimedOut => "timed_out",
-        }
+ron_tree::named! {
+    /// Kinds of faults.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum FaultKind {
+        /// The trial reported it: an invariant was violated, a policy failed, or the physics broke down.
+        Failed = "failed",
+        /// The program has a defect.
+        Panicked = "panicked",
+        /// The trial exceeded the time limit.
+        TimedOut = "timed_out",
     }
 }
 
 impl Fault {
     /// The policy of the trial failed.
-    #[must_use]
     pub fn of_policy(error: &PolicyError) -> Self {
         let is_late = matches!(error, PolicyError::Late | PolicyError::Slow(_));
         let kind = if is_late { FaultKind::TimedOut } else { FaultKind::Failed };
@@ -121,7 +106,6 @@ impl Fault {
     }
 
     /// A sentence with the trial and its fault.
-    #[must_use]
     pub fn sentence(&self, key: &TrialKey) -> String {
         let TrialKey { label, trial, seed, .. } = key;
         let kind = self.kind.name().replace('_', " ");
@@ -140,19 +124,16 @@ pub struct Outcome {
 
 impl Outcome {
     /// Its record, if the trial ran to its end.
-    #[must_use]
     pub fn record(&self) -> Option<&TrialRecord> {
         self.result.as_ref().ok().map(|trial| &trial.record)
     }
 
     /// Its status in one word, for tables.
-    #[must_use]
     pub fn status(&self) -> &'static str {
         self.result.as_ref().map_or_else(|fault| fault.kind.name(), |trial| trial.record.status.name())
     }
 
     /// Why the trial has no results, in one sentence; `None` if it has.
-    #[must_use]
     pub fn failure(&self) -> Option<String> {
         Some(self.result.as_ref().err()?.sentence(&self.key))
     }
@@ -171,7 +152,6 @@ pub struct TrialSetup<'a> {
 
 impl TrialSetup<'_> {
     /// The trial as a session gets to know it.
-    #[must_use]
     pub fn start(&self) -> TrialStart<'_> {
         TrialStart { scenario: &self.scenario.name, seed: self.seed }
     }

@@ -18,7 +18,6 @@ pub(super) fn dictionary(experiment: &Experiment) -> [(&'static str, String); 2]
 }
 
 /// `columns.md` of an experiment.
-#[must_use]
 pub fn columns_page(experiment: &Experiment) -> String {
     markdown(experiment, &tables(experiment))
 }

@@ -146,7 +146,6 @@ pub(super) fn check_continues(
 }
 
 /// Names of the files whose hashes differ from the manifest.
-#[must_use]
 pub fn broken_files(path: &Path, manifest: &Manifest) -> Vec<String> {
     let is_broken = |file: &&FileHash| file_hash(&path.join(&file.name)).ok() != Some(file.xxh3_128.clone());
     manifest.files.iter().filter(is_broken).map(|file| file.name.clone()).collect()
@@ -205,7 +204,6 @@ pub fn experiment_in(path: &Path, registry: &Registry) -> Result<(Experiment, Ma
 }
 
 /// Number of trials of a folder's sweep, if it holds one.
-#[must_use]
 pub fn trials_in(path: &Path) -> Option<u32> {
     read_manifest(path).ok()?.map(|manifest| manifest.trials)
 }

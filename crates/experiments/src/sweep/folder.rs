@@ -198,50 +198,42 @@ impl Folder {
     }
 
     /// Path of the folder.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
     /// The experiment of the folder.
-    #[must_use]
     pub fn experiment(&self) -> &Experiment {
         &self.experiment
     }
 
     /// The experiment, to share with threads.
-    #[must_use]
     pub fn shared_experiment(&self) -> Arc<Experiment> {
         Arc::clone(&self.experiment)
     }
 
     /// The manifest.
-    #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }
 
     /// The results of the finished trials, by place.
-    #[must_use]
     pub fn results(&self) -> &Results {
         &self.results
     }
 
     /// The finished trials of one case and policy, in their order.
-    #[must_use]
     pub fn places(&self, case: usize, policy: usize) -> Vec<Place> {
         self.results.range((case, policy, 0)..=(case, policy, u32::MAX)).map(|(place, _)| *place).collect()
     }
 
     /// The value of a metric in one trial; `None` if the trial has no value, failed, or has not been run.
-    #[must_use]
     pub fn value(&self, place: Place, metric: usize) -> Option<f64> {
         self.results.get(&place)?.metrics.as_ref()?.get(metric)
     }
 
     /// The values of a metric for one case and policy, from the trials that ran to their end and have a
     /// value.
-    #[must_use]
     pub fn values(&self, case: usize, policy: usize, metric: usize) -> Vec<f64> {
         let trials = self.results.range((case, policy, 0)..=(case, policy, u32::MAX));
         let measured = trials.filter_map(|(_, Measured { metrics, .. })| metrics.as_ref());
@@ -250,13 +242,11 @@ impl Folder {
 
     /// Number of trials that the folder is to have for a case and each policy: of its shard, or of the
     /// whole sweep.
-    #[must_use]
     pub fn trials_of(&self, case: usize) -> usize {
         self.experiment.trials_of(case, self.manifest.shard).count()
     }
 
     /// Whether a trial is finished.
-    #[must_use]
     pub fn has(&self, key: &TrialKey) -> bool {
         self.results.contains_key(&(key.case, key.policy, key.trial))
     }
@@ -303,7 +293,6 @@ impl Folder {
     }
 
     /// The message after an interruption.
-    #[must_use]
     pub fn interrupted(&self) -> Failure {
         let (done, path) = (self.results.len(), self.path.display());
         Failure::Interrupted(format!(

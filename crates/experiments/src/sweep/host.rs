@@ -64,7 +64,6 @@ pub struct HostRun {
 
 impl HostRun {
     /// A run on this machine, for a part in words.
-    #[must_use]
     pub fn of_part(part: String, threads: usize) -> Self {
         let memory = MemoryRefreshKind::nothing().with_ram();
         let kind = RefreshKind::nothing().with_memory(memory).with_cpu(CpuRefreshKind::nothing());
@@ -92,7 +91,6 @@ impl HostRun {
 
 impl Hosts {
     /// The runs of a folder; empty if there is no such file or it cannot be read.
-    #[must_use]
     pub fn read(folder: &Path) -> Self {
         let text = files::read(&folder.join(FILE)).unwrap_or_default();
         let none = Self { schema_version: SCHEMA_VERSION, runs: Vec::new(), rules: Vec::new() };

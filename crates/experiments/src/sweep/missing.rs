@@ -13,7 +13,6 @@ use crate::run::{Limits, Outcome, Run, run_batches};
 const SEEDS_AT_A_TIME: usize = 8;
 
 /// The trials of a shard, or of the whole sweep, that a folder lacks, in the order in which they are run.
-#[must_use]
 pub fn missing(folder: &Folder, shard: Option<Shard>) -> Vec<Place> {
     let experiment = folder.experiment();
     let cases: Vec<Vec<u32>> =

@@ -25,14 +25,12 @@ pub const PLOTS: &str = "plots";
 pub const RECORDINGS: &str = "recordings";
 
 /// Whether a folder holds a sweep. The program that made it may be another one, and the manifest damaged.
-#[must_use]
 pub fn is_sweeps(path: &Path) -> bool {
     let manifest = files::read(&path.join(MANIFEST)).unwrap_or_default();
     String::from_utf8_lossy(&manifest).contains("\"program\": \"usar\"")
 }
 
 /// The folders inside a folder that hold sweeps, by name.
-#[must_use]
 pub fn sweeps_in(path: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(path).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut sweeps: Vec<PathBuf> = entries.filter(|entry| is_sweeps(entry)).collect();

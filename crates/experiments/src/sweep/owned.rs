@@ -92,7 +92,6 @@ pub struct Report {
 
 impl Report {
     /// A report in this folder, without any file yet.
-    #[must_use]
     pub fn of(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), files: Vec::new() }
     }

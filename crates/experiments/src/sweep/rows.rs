@@ -123,7 +123,6 @@ fn about(metric: &Metric, until: &str) -> About {
 }
 
 /// Names of the columns of `trials.csv`, without the axes.
-#[must_use]
 pub fn trial_columns(metrics: &Catalogue) -> Vec<String> {
     trials(metrics).into_iter().map(|column| column.about.name).collect()
 }

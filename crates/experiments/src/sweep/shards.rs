@@ -48,13 +48,11 @@ impl<'r> Shards<'r> {
     }
 
     /// The whole sweep.
-    #[must_use]
     pub fn experiment(&self) -> &Arc<Experiment> {
         &self.experiment
     }
 
     /// The manifest of the first shard.
-    #[must_use]
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }

@@ -66,7 +66,6 @@ pub struct Described {
 }
 
 /// The tables that a sweep may have, from those that every sweep keeps to those that take the most room.
-#[must_use]
 pub fn described(experiment: &Experiment) -> [Described; TABLES.len()] {
     let of = |place: usize, own: Vec<About>| Described {
         csv: TABLES[place],

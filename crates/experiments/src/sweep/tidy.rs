@@ -11,7 +11,6 @@ use crate::metric::Values;
 use crate::run::Outcome;
 
 /// The columns; the axes of the sweep follow the case.
-#[must_use]
 pub fn tidy_columns(folder: &Folder) -> Vec<String> {
     let axes = folder.experiment().axes.iter().map(|axis| axis.path.as_str());
     let after = ["policy", "trial", "seed", "round", "task", "metric", "value"];

@@ -4,9 +4,8 @@ use experiments::Failure;
 use experiments::comparison::Comparison;
 use experiments::experiment::{Axis, Experiment};
 use experiments::sweep::folder::Folder;
-use statistics::Moments;
-use statistics::paired::t_half_width;
 
+use super::band::Band;
 use crate::drawing::{
     Drawing, Panel, Sketch, difference_heat_map, from_top, is_drawn, layout, line_panel, names, table,
 };
@@ -98,21 +97,10 @@ pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Res
                 let mut points: Vec<(f64, f64, f64)> = Vec::new();
                 for (at, other) in cases.iter().enumerate() {
                     let values = folder.values(*other, p, *metric);
-                    let Some(mean) = Moments::of(&values).mean else { continue };
-                    let half = t_half_width(&values);
-                    points.push((
-                        if is_numeric { numbers[at] } else { at as f64 },
-                        mean,
-                        half.unwrap_or(0.0),
-                    ));
-                    rows.push(vec![
-                        experiment.metrics[*metric].name.clone(),
-                        policy.label.clone(),
-                        axis.values[at].clone(),
-                        values.len().to_string(),
-                        mean.to_string(),
-                        half.map_or(String::new(), |half| half.to_string()),
-                    ]);
+                    let Some(band) = Band::of(&values) else { continue };
+                    points.push(band.at(if is_numeric { numbers[at] } else { at as f64 }));
+                    let name = &experiment.metrics[*metric].name;
+                    rows.push(band.row([name, &policy.label, &axis.values[at]]));
                 }
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
                 lines.push((p, names[p].as_str(), points));

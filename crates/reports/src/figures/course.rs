@@ -5,10 +5,9 @@ use experiments::Failure;
 use experiments::experiment::Experiment;
 use experiments::metric::task_names;
 use experiments::run::series_times;
-use statistics::Moments;
-use statistics::paired::t_half_width;
 
 use super::Part;
+use super::band::Band;
 use super::gather::Gathered;
 use super::metrics::capitalised;
 use crate::drawing::{
@@ -34,17 +33,9 @@ pub(super) fn over_time(
             let mut points = Vec::new();
             for (at, time) in times.iter().enumerate() {
                 let values: Vec<f64> = gathered.delivered.iter().map(|trial| trial[at][part]).collect();
-                let Some(mean) = Moments::of(&values).mean else { continue };
-                let half = t_half_width(&values);
-                points.push((*time, mean, half.unwrap_or(0.0)));
-                rows.push(vec![
-                    metric.clone(),
-                    policy.label.clone(),
-                    time.to_string(),
-                    values.len().to_string(),
-                    mean.to_string(),
-                    half.map_or(String::new(), |half| half.to_string()),
-                ]);
+                let Some(band) = Band::of(&values) else { continue };
+                points.push(band.at(*time));
+                rows.push(band.row([metric, &policy.label, &time.to_string()]));
             }
             lines.push((i, names[i].as_str(), points));
         }
@@ -146,20 +137,12 @@ pub(super) fn levels(
                 let mut points = Vec::new();
                 for ((round, _), trials) in gathered.levels.iter().filter(|((_, of), _)| *of == task) {
                     let values: Vec<f64> = trials.iter().map(|trial| trial[level]).collect();
-                    let Some(mean) = Moments::of(&values).mean else { continue };
-                    let half = t_half_width(&values);
-                    rows.push(vec![
-                        name.to_lowercase(),
-                        task_name.clone(),
-                        policy.label.clone(),
-                        round.to_string(),
-                        values.len().to_string(),
-                        mean.to_string(),
-                        half.map_or(String::new(), |half| half.to_string()),
-                    ]);
+                    let Some(band) = Band::of(&values) else { continue };
+                    let place = [&name.to_lowercase(), task_name, &policy.label, &round.to_string()];
+                    rows.push(band.row(place.map(String::as_str)));
                     // Rounds that few trials reached carry little information and would stretch the axis.
                     if 2 * values.len() >= gathered.delivered.len() {
-                        points.push((f64::from(*round), mean, half.unwrap_or(0.0)));
+                        points.push(band.at(f64::from(*round)));
                     }
                 }
                 lines.push((i, names[i].as_str(), points));

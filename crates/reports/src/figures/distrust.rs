@@ -15,7 +15,6 @@ const MOST_WITH_NUMBERS: usize = 30;
 /// let svg = reports::distrust_map("RNE", &names, &[vec![0.0, 0.25], vec![0.5, 0.0]]);
 /// assert!(svg.contains("spot-2") && svg.contains(">250.00<"));
 /// ```
-#[must_use]
 pub fn distrust_map(title: &str, names: &[String], distrust: &[Vec<f64>]) -> String {
     let cell = if names.len() > MOST_WITH_NUMBERS { 14.0 } else { 46.0 };
     let side = (cell * names.len() as f64).max(280.0);

@@ -6,13 +6,17 @@ use experiments::experiment::Experiment;
 use experiments::metric::{Metric, Values};
 use experiments::sweep::folder::Folder;
 use kuva::plot::annotations::ReferenceLine;
-use kuva::plot::{BoxPlot, ForestPlot, ScatterPlot, StripPlot};
+use kuva::plot::{BoxPlot, ScatterPlot, StripPlot};
+use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
 use statistics::Moments;
 use statistics::bootstrap::quantile;
 
 use super::is_quiet;
-use crate::drawing::{Drawing, Panel, Rows, Sketch, colour, is_drawn, layout, names, range, table};
+use crate::drawing::{
+    Drawing, Panel, Rows, Sketch, colour, columns, forest_plot, interval_panel, is_drawn, layout, names,
+    range, table,
+};
 
 /// About the largest number of a policy's trials that are drawn as points, beside those beyond the whiskers;
 /// more would hide the boxes.
@@ -232,7 +236,7 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
              below.{dotted}"
         ),
         drawing: Drawing::new(panels, 3, [420.0, 280.0]),
-        csv: table(&DIFFERENCES, comparisons.iter().copied().map(differences_row))?,
+        csv: table(&columns(DIFFERENCES), comparisons.iter().copied().map(differences_row))?,
     })
 }
 
@@ -248,7 +252,7 @@ fn forest_panel(
         place.map_or("", |place| names[place].as_str())
     };
     let Metric { name: title, unit, .. } = &experiment.metrics[experiment.metrics.named(metric)?];
-    let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
+    let mut plot = forest_plot();
     let mut ends = Vec::new();
     for comparison in comparisons {
         let (Some(difference), Some([low, high])) = (comparison.difference, comparison.interval) else {
@@ -261,44 +265,23 @@ fn forest_panel(
     if ends.is_empty() {
         return Ok(None);
     }
-    let plots = vec![Plot::Forest(plot)];
-    let mut layout = layout(&plots, title);
+    let mut lines = Vec::new();
     let widest = ends.iter().fold(0.0, |most: f64, end| most.max(end.abs()));
     let margin = comparisons.iter().find_map(|comparison| comparison.judged).map(|judged| judged.margin);
     if let Some(margin) = margin.filter(|margin| *margin <= FARTHEST_MARGIN * widest) {
         ends.extend([-margin, margin]);
-        for at in [-margin, margin] {
-            let line = ReferenceLine::vertical(at).with_color("#555555").with_dasharray("2 3");
-            layout = layout.with_reference_line(line);
-        }
+        let dotted = |at| ReferenceLine::vertical(at).with_color("#555555").with_dasharray("2 3");
+        lines.extend([-margin, margin].map(dotted));
     }
-    let [low, high] = forest_range(&ends);
-    let layout = layout
-        .with_x_label(format!("first less second ({})", if unit.is_empty() { "count" } else { unit }))
-        .with_ticks(4)
-        .with_x_axis_min(low)
-        .with_x_axis_max(high);
+    let label = format!("first less second ({})", if unit.is_empty() { "count" } else { unit });
+    let Panel { plots, layout, .. } = interval_panel(plot, title, &label, forest_range(&ends));
+    let layout = lines.into_iter().fold(layout, Layout::with_reference_line);
     Ok(Some(Panel { metric: metric.to_owned(), plots, layout }))
 }
 
 /// Columns of `differences.csv`.
-const DIFFERENCES: [&str; 15] = [
-    "metric",
-    "a",
-    "b",
-    "n",
-    "difference",
-    "low",
-    "high",
-    "p",
-    "p_holm",
-    "shift",
-    "effect",
-    "pairing",
-    "detectable",
-    "margin",
-    "pairs_for_margin",
-];
+const DIFFERENCES: &str = "metric,a,b,n,difference,low,high,p,p_holm,shift,effect,pairing,detectable,margin,\
+    pairs_for_margin";
 
 fn differences_row(c: &Comparison) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());

@@ -1,6 +1,7 @@
 //! The figures of a report, each with the table of its numbers.
 
 mod axes;
+mod band;
 mod course;
 mod distrust;
 mod gather;

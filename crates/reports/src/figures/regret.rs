@@ -4,12 +4,10 @@ use std::collections::BTreeMap;
 
 use experiments::Failure;
 use experiments::regret::{Analysis, DecisionRow, Estimate};
-use kuva::plot::ForestPlot;
-use kuva::render::plots::Plot;
 use statistics::Moments;
 use statistics::paired::t_half_width;
 
-use crate::drawing::{Drawing, Panel, Sketch, layout, line_panel, range, table};
+use crate::drawing::{Drawing, Sketch, forest_plot, interval_panel, line_panel, range, table};
 
 /// Regret round by round, and the share of the achievable that each policy achieves.
 ///
@@ -73,7 +71,7 @@ fn points(values: impl Iterator<Item = (u32, f64)>) -> Vec<(f64, f64, f64)> {
 fn achieved(analyses: &[Analysis]) -> Result<Sketch, Failure> {
     let (mut panels, mut rows) = (Vec::new(), Vec::new());
     for analysis in analyses {
-        let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
+        let mut plot = forest_plot();
         let mut ends = vec![0.0, 100.0];
         for policy in &analysis.policies {
             let Some(Estimate { value, interval: Some([low, high]) }) = policy.achieved else { continue };
@@ -84,14 +82,7 @@ fn achieved(analyses: &[Analysis]) -> Result<Sketch, Failure> {
             rows.push([vec![analysis.metric.clone(), policy.policy.clone()], numbers.to_vec()].concat());
         }
         if ends.len() > 2 {
-            let plots = vec![Plot::Forest(plot)];
-            let [low, high] = range(ends);
-            let layout = layout(&plots, &analysis.metric)
-                .with_x_label("achieved (%)")
-                .with_ticks(4)
-                .with_x_axis_min(low)
-                .with_x_axis_max(high);
-            panels.push(Panel { metric: String::new(), plots, layout });
+            panels.push(interval_panel(plot, &analysis.metric, "achieved (%)", range(ends)));
         }
     }
     Ok(Sketch {

@@ -3,10 +3,9 @@
 use experiments::Failure;
 use experiments::explore::{Index, Row};
 use kuva::plot::ForestPlot;
-use kuva::render::plots::Plot;
 use statistics::sensitivity::Known;
 
-use crate::drawing::{Drawing, Panel, Sketch, layout, range, table};
+use crate::drawing::{Drawing, Panel, Sketch, columns, forest_plot, interval_panel, range, table};
 
 const OF_SHOWN: &str = "#0072B2";
 const OF_OTHERS: &str = "#999999";
@@ -34,7 +33,7 @@ pub(crate) fn sensitivity(rows: &[Row]) -> Result<Sketch, Failure> {
 }
 
 fn panel<'a>(outcome: &str, rows: impl Iterator<Item = &'a Row>) -> Option<Panel> {
-    let mut plot = ForestPlot::new().with_null_value(0.0).with_cap_size(4.0);
+    let mut plot = forest_plot();
     let (mut ends, mut label) = (vec![0.0], "");
     for row in rows {
         let shown = if row.is_shown() && !row.is_chance() { OF_SHOWN } else { OF_OTHERS };
@@ -60,50 +59,19 @@ fn panel<'a>(outcome: &str, rows: impl Iterator<Item = &'a Row>) -> Option<Panel
     if ends.len() < 2 {
         return None;
     }
-    let plots = vec![Plot::Forest(plot)];
-    let [low, high] = range(ends);
-    let layout =
-        layout(&plots, outcome).with_x_label(label).with_ticks(4).with_x_axis_min(low).with_x_axis_max(high);
-    Some(Panel { metric: String::new(), plots, layout })
+    Some(interval_panel(plot, outcome, label, range(ends)))
 }
 
-const HEADER: [&str; 16] = [
-    "who",
-    "metric",
-    "parameter",
-    "blocks",
-    "is_shown",
-    "mu_star",
-    "mu_star_low",
-    "mu_star_high",
-    "mu",
-    "mu_low",
-    "mu_high",
-    "sigma",
-    "sigma_low",
-    "sigma_high",
-    "beyond_low",
-    "beyond_high",
-];
+const HEADER: &str = "who,metric,parameter,blocks,is_shown,mu_star,mu_star_low,mu_star_high,mu,mu_low,\
+    mu_high,sigma,sigma_low,sigma_high,beyond_low,beyond_high";
 
-const HEADER_OF_SHARES: [&str; 11] = [
-    "who",
-    "metric",
-    "parameter",
-    "blocks",
-    "is_shown",
-    "first",
-    "first_low",
-    "first_high",
-    "total",
-    "total_low",
-    "total_high",
-];
+const HEADER_OF_SHARES: &str =
+    "who,metric,parameter,blocks,is_shown,first,first_low,first_high,total,total_low,total_high";
 
 /// The table of the indices.
 fn csv(rows: &[Row]) -> Result<String, Failure> {
     let is_of_effects = rows.iter().any(|row| matches!(row.index, Index::Effects { .. }));
-    let header: &[&str] = if is_of_effects { &HEADER } else { &HEADER_OF_SHARES };
+    let header = columns(if is_of_effects { HEADER } else { HEADER_OF_SHARES });
     let cells = |row: &Row| {
         let mut cells = vec![
             row.outcome.who.clone(),
@@ -132,5 +100,5 @@ fn csv(rows: &[Row]) -> Result<String, Failure> {
         cells.resize(header.len(), String::new());
         cells
     };
-    table(header, rows.iter().map(cells))
+    table(&header, rows.iter().map(cells))
 }

@@ -9,7 +9,6 @@ use super::{headed, right};
 /// A row for each change of an axis, a column for each policy: the change of the policy's mean in percent,
 /// with its interval. If all changes are from the same case and over the same seeds, the first row has the
 /// means there.
-#[must_use]
 pub fn effects_table(effects: &[&Effect]) -> Table {
     let percent = |effect: &Effect| match effect.in_percent() {
         Some(percent) => {
@@ -44,7 +43,6 @@ fn means_before<'e>(effects: &'e [&Effect]) -> impl Iterator<Item = Entry> + 'e 
 
 /// A row for each change of an axis, a column for each pair of policies: the change of their difference,
 /// with its interval.
-#[must_use]
 pub fn interactions_table(interactions: &[&Interaction]) -> Table {
     let text = |one: &Interaction| match one.change.zip(one.interval) {
         Some((change, [low, high])) => with_interval(change, low, high, one.is_found()),
@@ -59,7 +57,6 @@ pub fn interactions_table(interactions: &[&Interaction]) -> Table {
 }
 
 /// A row for each case, a column for each pair of policies: their difference, with its interval.
-#[must_use]
 pub fn differences_table(comparisons: &[&Comparison]) -> Table {
     let text = |one: &Comparison| match one.difference.zip(one.interval) {
         Some((difference, [low, high])) => with_interval(difference, low, high, one.verdict.is_shown()),
@@ -75,7 +72,6 @@ pub fn differences_table(comparisons: &[&Comparison]) -> Table {
 
 /// The differences of one metric in many cases, for a narrow terminal: a row for each case, a column for each
 /// pair of policies. Without intervals: `*` marks what is shown, `=` what is equivalent.
-#[must_use]
 pub fn cases_table(comparisons: &[&Comparison]) -> Table {
     let mark = |one: &Comparison| match one.verdict {
         Verdict::Equivalent => " =",

@@ -32,14 +32,12 @@ pub fn show_as(format: Format) {
 }
 
 /// The format of tables.
-#[must_use]
 pub fn shown_as() -> Format {
     FORMAT.get().copied().unwrap_or_default()
 }
 
 impl Format {
     /// Whether the output may contain nothing but tables.
-    #[must_use]
     pub fn is_for_programs(self) -> bool {
         matches!(self, Self::Csv | Self::Latex | Self::Json)
     }

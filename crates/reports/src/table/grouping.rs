@@ -6,7 +6,6 @@ use experiments::rounds::{GroupLevels, KEYS, Share, SortingAgreement};
 use super::{Format, headed, right, shown_as};
 
 /// How often each policy's split equals sorting.
-#[must_use]
 pub fn likeness_table(policies: &[(String, [SortingAgreement; 3])]) -> Table {
     let first = policies.iter().map(|(_, agreements)| &agreements[0]).find(|likeness| likeness.rounds() > 0);
     let roles: Vec<String> = first
@@ -44,7 +43,6 @@ pub fn likeness_table(policies: &[(String, [SortingAgreement; 3])]) -> Table {
 
 /// Mean levels of these tasks' groups, round by round. The difference is between the first and the last
 /// task.
-#[must_use]
 pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
     let mut header = ["policy", "round", "n"].map(str::to_owned).to_vec();
     for level in ["energy", "HP"] {

@@ -29,7 +29,6 @@ const MOST_COLUMNS: usize = 8;
 
 /// Mean ± sample standard deviation of each metric and policy in one case. A row for each metric, or, if
 /// there are more than eight policies, for each policy.
-#[must_use]
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let trials = folder.trials_of(case);
@@ -68,15 +67,14 @@ fn indented(name: &str, above: &str) -> String {
 }
 
 /// The comparisons of one metric in five columns, for a terminal of 80 columns.
-#[must_use]
 pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
     let mut table = headed(["A - B", "difference", "95 % interval", "p", "verdict"]);
     for c in comparisons {
         table.add_row([
             Cell::new(format!("{} - {}", c.a, c.b)),
-            right(&c.difference.map_or("-".to_owned(), short)),
+            number(c.difference),
             right(&between(c.interval)),
-            right(&c.p_holm.map_or("-".to_owned(), short_p)),
+            right(&or_dash(c.p_holm, short_p)),
             Cell::new(c.verdict_in_words()),
         ]);
     }
@@ -84,37 +82,36 @@ pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
 }
 
 /// An interval in words.
-pub(crate) fn between(interval: Option<[f64; 2]>) -> String {
-    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
+pub fn between(interval: Option<[f64; 2]>) -> String {
+    or_dash(interval, |[low, high]| format!("{} to {}", short(low), short(high)))
+}
+
+/// A value as text; a dash if there is none.
+pub fn or_dash<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> String {
+    value.map_or("-".to_owned(), text)
+}
+
+/// A short number as a cell; a dash if there is none.
+pub fn number(value: Option<f64>) -> Cell {
+    right(&or_dash(value, short))
+}
+
+/// A mean as a cell; a dash if there is none.
+pub fn mean(value: Option<f64>) -> Cell {
+    right(&or_dash(value, |value| digits(value, 4)))
 }
 
 /// A row for each comparison, with all that is known of it.
-#[must_use]
 pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
     let is_judged = comparisons.iter().any(|comparison| comparison.judged.is_some());
-    let header = [
-        "metric",
-        "A - B",
-        "n",
-        "mean A",
-        "mean B",
-        "difference",
-        "95 % interval",
-        "shift",
-        "p",
-        "p Holm",
-        "effect",
-        "detectable",
-        "verdict",
-    ];
+    let header =
+        "metric,A - B,n,mean A,mean B,difference,95 % interval,shift,p,p Holm,effect,detectable,verdict";
     let of_margin = ["pairs for margin"].into_iter().filter(|_| is_judged);
-    let mut table = headed(header.into_iter().chain(of_margin).collect::<Vec<_>>());
-    let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
-    let mean = |value: Option<f64>| right(&value.map_or("-".to_owned(), |value| digits(value, 4)));
+    let mut table = headed(header.split(',').chain(of_margin).collect::<Vec<_>>());
     for c in comparisons {
-        let p = |p: Option<f64>| right(&p.map_or("-".to_owned(), short_p));
+        let p = |p: Option<f64>| right(&or_dash(p, short_p));
         let pairs = c.judged.and_then(|judged| judged.pairs_for_margin);
-        let of_margin = [right(&pairs.map_or("-".to_owned(), |pairs| pairs.to_string()))];
+        let of_margin = [right(&or_dash(pairs, |pairs| pairs.to_string()))];
         let cells = [
             Cell::new(&c.metric),
             Cell::new(format!("{} - {}", c.a, c.b)),
@@ -126,7 +123,7 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
             number(c.shift),
             p(c.p),
             p(c.p_holm),
-            right(&c.effect.map_or("-".to_owned(), |effect| format!("{effect:.2}"))),
+            right(&or_dash(c.effect, |effect| format!("{effect:.2}"))),
             number(c.detectable),
             Cell::new(c.verdict_in_words()),
         ];
@@ -137,7 +134,6 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
 
 /// A row for each round and task: what was carried and why the group went home; where there is room, also
 /// when it began, what it cost, and who turned back.
-#[must_use]
 pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table {
     let cells = |round: &RoundRecord| {
         let members: Vec<String> = round.members.iter().map(|member| member.id.to_string()).collect();
@@ -145,7 +141,7 @@ pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table
             ("round", true, right(&round.round.to_string())),
             ("task", true, Cell::new(&record.tasks[round.task.index()].task)),
             ("from s", false, right(&format!("{:.1}", round.start_s))),
-            ("to s", true, right(&round.end_s.map_or("-".to_owned(), |end| format!("{end:.1}")))),
+            ("to s", true, right(&or_dash(round.end_s, |end| format!("{end:.1}")))),
             ("members", true, Cell::new(members.join(" "))),
             ("secured", false, right(&round.secured.to_string())),
             ("rescued", true, right(&round.rescued.to_string())),
@@ -168,7 +164,6 @@ pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table
 }
 
 /// A table in the style of the project, with this header.
-#[must_use]
 pub fn headed(header: impl Into<Row>) -> Table {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED).set_header(header);
@@ -193,13 +188,11 @@ fn columns() -> Option<usize> {
 const WIDE: u16 = 120;
 
 /// Whether a table may have many columns: in a wide terminal, and where programs or pages read it.
-#[must_use]
 pub fn is_wide() -> bool {
     shown_as() != Format::Table || COLUMNS.get().is_some_and(|columns| *columns >= WIDE)
 }
 
 /// A cell aligned on the right.
-#[must_use]
 pub fn right(text: &str) -> Cell {
     Cell::new(text).set_alignment(CellAlignment::Right)
 }

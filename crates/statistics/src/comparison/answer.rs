@@ -20,7 +20,6 @@ const WORDS: usize = 25;
 /// };
 /// assert_eq!(answer(&[&one]).unwrap(), "rescuees.hard: RNE 13.4 above DIS.");
 /// ```
-#[must_use]
 pub fn answer(comparisons: &[&Comparison]) -> Option<String> {
     if comparisons.iter().all(|one| one.p.is_none()) {
         let n = comparisons.iter().map(|one| one.n).max()?;
@@ -85,7 +84,6 @@ fn counted(comparisons: &[&Comparison]) -> String {
 
 /// The answer of comparisons in many cases: for each metric and pair, in how many cases what is shown. `None`
 /// without comparisons.
-#[must_use]
 pub fn answer_of_cases(comparisons: &[&Comparison]) -> Option<String> {
     let (first, cases) = (comparisons.first()?, comparisons.iter().map(|one| one.case).max()?);
     let same = |one: &&Comparison, like: &Comparison| {
@@ -115,7 +113,6 @@ pub fn answer_of_cases(comparisons: &[&Comparison]) -> Option<String> {
 }
 
 /// What would settle the comparisons that are undecided; `None` if none is.
-#[must_use]
 pub fn what_would_settle(comparisons: &[Comparison]) -> Option<String> {
     let open: Vec<&Comparison> =
         comparisons.iter().filter(|one| one.verdict == Verdict::Undecided && one.p.is_some()).collect();

@@ -100,13 +100,11 @@ pub struct Comparison {
 
 impl Comparison {
     /// Whether a difference shows after correction.
-    #[must_use]
     pub fn is_found(&self) -> bool {
         self.p_holm.is_some_and(|p| p < LEVEL)
     }
 
     /// Whether the difference is shown to be smaller than the margin.
-    #[must_use]
     pub fn is_equivalent(&self) -> bool {
         self.verdict == Verdict::Equivalent
     }
@@ -169,7 +167,6 @@ pub fn correct(family: &mut [Comparison]) {
 
 /// A warning if the family of comparisons is so large, and the pairs are so few, that no difference can be
 /// significant after correction.
-#[must_use]
 pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
     let family = comparisons.iter().filter(|comparison| comparison.p.is_some()).count();
     let most = comparisons.iter().map(|comparison| comparison.n).max()?;
@@ -177,7 +174,6 @@ pub fn limit_of_correction(comparisons: &[Comparison]) -> Option<String> {
 }
 
 /// The warning for a family of tests on so many pairs at most; `what` names the tests.
-#[must_use]
 pub fn limit(most: usize, family: usize, what: &str) -> Option<String> {
     let smallest = if most > EXACT_PAIRS {
         2.0 / f64::from(DRAWS + 1)
@@ -197,7 +193,6 @@ pub fn limit(most: usize, family: usize, what: &str) -> Option<String> {
 }
 
 /// How p was computed, in words.
-#[must_use]
 pub fn test_in_words(comparisons: &[Comparison]) -> String {
     let most = comparisons.iter().map(|comparison| comparison.n).max().unwrap_or(0);
     if comparisons.iter().all(|comparison| comparison.is_exact) {

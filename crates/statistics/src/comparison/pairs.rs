@@ -33,7 +33,6 @@ impl Pairs {
     }
 
     /// The interval of the mean difference, or of the difference of ratios of sums.
-    #[must_use]
     pub fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
         match &self.sums {
             Some(sums) => sums.interval(confidence),
@@ -42,7 +41,6 @@ impl Pairs {
     }
 
     /// First minus second, pair by pair.
-    #[must_use]
     pub fn differences(&self) -> Vec<f64> {
         self.a.iter().zip(&self.b).map(|(a, b)| a - b).collect()
     }

@@ -24,7 +24,6 @@ pub struct Sums {
 impl Sums {
     /// Whether ratios of these sums are compared: some trial has few rescuees, and neither subject has none
     /// at all.
-    #[must_use]
     pub fn are_compared(&self) -> bool {
         let is_few = self.pairs.iter().any(|pair| pair[1] < FEW || pair[3] < FEW);
         is_few && self.total(1) > 0.0 && self.total(3) > 0.0
@@ -35,7 +34,6 @@ impl Sums {
     }
 
     /// The linearised values of both subjects.
-    #[must_use]
     pub fn linearised(&self) -> [Vec<f64>; 2] {
         let ratio = (self.total(0) + self.total(2)) / (self.total(1) + self.total(3));
         [0, 2].map(|cost| {
@@ -46,7 +44,6 @@ impl Sums {
     }
 
     /// The interval of the difference of the two ratios, from resampled pairs.
-    #[must_use]
     pub fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
         statistic_interval(self.pairs.len(), confidence, |rows| difference(&self.pairs, rows))
     }

@@ -34,7 +34,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// The verdict in a word.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Better => "better",
@@ -47,7 +46,6 @@ impl Verdict {
     }
 
     /// Whether it says that a difference is shown.
-    #[must_use]
     pub fn is_shown(self) -> bool {
         !matches!(self, Self::Equivalent | Self::Undecided)
     }
@@ -81,7 +79,6 @@ pub struct Judged {
 
 impl Comparison {
     /// The verdict, and what is known of the margin, for a table.
-    #[must_use]
     pub fn verdict_in_words(&self) -> String {
         let verdict = self.verdict.name();
         let Some(judged) = &self.judged else { return verdict.to_owned() };
@@ -96,7 +93,6 @@ impl Comparison {
 }
 
 /// The verdict of a comparison, where a margin is known with it and the 90 % interval of the difference.
-#[must_use]
 pub fn verdict(
     comparison: &Comparison,
     margin: Option<(f64, Option<[f64; 2]>)>,
@@ -125,7 +121,6 @@ pub fn verdict(
 }
 
 /// Whether a difference that is shown lies beyond the margin; `None` where none is shown.
-#[must_use]
 pub fn beyond(comparison: &Comparison, margin: f64) -> Option<Beyond> {
     let [low, high] = comparison.interval.filter(|_| comparison.verdict.is_shown())?;
     Some(if low > margin || high < -margin { Beyond::Yes } else { Beyond::Undecided })

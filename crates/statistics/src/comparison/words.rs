@@ -131,7 +131,6 @@ fn beyond_in_words(judged: Judged) -> String {
 }
 
 /// About three significant digits.
-#[must_use]
 pub fn short(value: f64) -> String {
     digits(value, 3)
 }
@@ -144,7 +143,6 @@ pub fn short(value: f64) -> String {
 /// let shown = [0.000_378, 8.333e-6, -12_345_678.0, 52.7].map(|value| digits(value, 3));
 /// assert_eq!(shown, ["0.000378", "8.33e-6", "-12.3e6", "52.7"]);
 /// ```
-#[must_use]
 pub fn digits(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -165,13 +163,11 @@ pub fn digits(value: f64, digits: i32) -> String {
 }
 
 /// A p value as papers print it.
-#[must_use]
 pub fn short_p(p: f64) -> String {
     if p < 0.0001 { "< 0.0001".to_owned() } else { format!("{p:.4}") }
 }
 
 /// A p value for use in a sentence.
-#[must_use]
 pub fn p_in_words(p: f64) -> String {
     if p < 0.0001 { "p < 0.0001".to_owned() } else { format!("p = {p:.4}") }
 }

@@ -93,7 +93,6 @@ impl Candidate {
     }
 
     /// How well each of its values is known.
-    #[must_use]
     pub fn identified(&self) -> Vec<Identified> {
         self.calibration.identified(&self.evaluations)
     }
@@ -111,7 +110,6 @@ impl Candidate {
 
 /// Judges the candidates by their trials, the nearest to the data first. Each candidate has a list of
 /// quantities; all candidates have the same seeds.
-#[must_use]
 pub fn judge(target: &Target, candidates: &[(Candidate, Vec<Vec<f64>>)]) -> Vec<Judged> {
     let trials = candidates.first().and_then(|(_, quantities)| quantities.first()).map_or(0, Vec::len);
     let of = |values: &[Vec<f64>], rows: &[usize]| -> Vec<Spread> {

@@ -34,7 +34,6 @@ pub struct Fit {
 
 impl Fit {
     /// A row for each quantity.
-    #[must_use]
     pub fn rows(calibration: &Calibration, fitted: &[Spread], fresh: &[Spread]) -> Vec<Self> {
         let target = &calibration.target;
         let models = fitted.iter().zip(fresh);

@@ -34,7 +34,6 @@ pub struct Identified {
 
 impl Calibration {
     /// How well each value of the best of these evaluations is known; empty without any.
-    #[must_use]
     pub fn identified(&self, evaluations: &[Evaluation]) -> Vec<Identified> {
         let runs = || evaluations.iter().filter(|evaluation| evaluation.failure.is_none());
         let Some(best) = runs().min_by(|a, b| a.misfit.total_cmp(&b.misfit)) else { return Vec::new() };

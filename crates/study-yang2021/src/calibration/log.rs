@@ -36,19 +36,16 @@ impl Log {
     }
 
     /// The evaluation of a candidate, if there is one.
-    #[must_use]
     pub fn find(&self, values: &[f64]) -> Option<&Evaluation> {
         self.evaluations.iter().find(|evaluation| evaluation.values == values)
     }
 
     /// All evaluations, in the order in which they were added.
-    #[must_use]
     pub fn evaluations(&self) -> &[Evaluation] {
         &self.evaluations
     }
 
     /// The evaluation with the least misfit; the earliest of equals.
-    #[must_use]
     pub fn best(&self) -> Option<&Evaluation> {
         let runs = self.evaluations.iter().filter(|evaluation| evaluation.failure.is_none());
         runs.min_by(|a, b| a.misfit.total_cmp(&b.misfit))

@@ -199,7 +199,6 @@ impl Calibration {
     }
 
     /// Edge penalty of these values: the sum over all values near the ends of their ranges.
-    #[must_use]
     pub fn edge_penalty(&self, values: &[f64]) -> f64 {
         self.free.iter().zip(values).map(|(free, value)| edge_penalty(free, *value)).sum()
     }

@@ -44,7 +44,6 @@ pub struct Spread {
 
 impl Spread {
     /// The spread of at least two values.
-    #[must_use]
     pub fn of(values: &[f64]) -> Option<Self> {
         let Moments { mean, sd, .. } = Moments::of(values);
         Some(Self { mean: mean?, sd: sd? })
@@ -55,7 +54,6 @@ impl Spread {
     /// by its standard error under the assumption that both samples come from one normal distribution. For
     /// a true model, the square of each is 1 on average. The model's standard deviation counts as at least
     /// a twentieth of this one.
-    #[must_use]
     pub(crate) fn residuals(&self, model: &Self, trials: usize, model_trials: usize) -> [f64; 2] {
         let [n, m] = [trials, model_trials].map(|trials| trials.max(2) as f64);
         let mean = (model.mean - self.mean) / self.sd;
@@ -134,7 +132,6 @@ impl Target {
 
     /// Distance of a model from the target, from this many trials of the model: the sum over all
     /// quantities. Smaller is nearer. For a true model, it is twice the number of quantities on average.
-    #[must_use]
     pub fn misfit(&self, model: &[Spread], model_trials: usize) -> f64 {
         misfit(&self.spreads, model, self.trials, model_trials)
     }

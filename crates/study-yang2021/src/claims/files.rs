@@ -20,10 +20,10 @@ pub fn write_authors_columns(out: &Path, folder: &Folder) -> Result<(), Failure>
     let mut trials = csv::Reader::from_path(&path).map_err(bad)?;
     let header = trials.headers().map_err(bad)?.clone();
     let missing = |name: &str| Failure::storage(format!("{}: has no column {name}", path.display()));
-    let place = |name: &&str| header.iter().position(|known| known == *name).ok_or_else(|| missing(name));
-    let places = AUTHORS_COLUMNS.iter().map(place).collect::<Result<Vec<_>, _>>()?;
+    let place = |name: &str| header.iter().position(|known| known == name).ok_or_else(|| missing(name));
+    let places = AUTHORS_COLUMNS.split(',').map(place).collect::<Result<Vec<_>, _>>()?;
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(AUTHORS_COLUMNS).map_err(Failure::run)?;
+    table.write_record(AUTHORS_COLUMNS.split(',')).map_err(Failure::run)?;
     for record in trials.records() {
         let record = record.map_err(bad)?;
         table.write_record(places.iter().map(|place| &record[*place])).map_err(Failure::run)?;

@@ -92,7 +92,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// In words.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -117,7 +116,6 @@ impl Verdict {
 
     /// The verdict from the intervals of all parts: each at 95 %, within its margin, and each at 95 % shared
     /// by the parts.
-    #[must_use]
     fn of(parts: &[PartFinding]) -> Self {
         let on = |interval: Option<[f64; 2]>, side: Side| {
             interval.is_some_and(|[low, high]| match side {
@@ -147,7 +145,6 @@ impl Side {
     }
 
     /// The side as a sign between the two quantities.
-    #[must_use]
     pub fn sign(self) -> char {
         match self {
             Self::More => '>',
@@ -178,14 +175,12 @@ pub struct PartFinding {
 
 impl PartFinding {
     /// Standard deviation of the differences.
-    #[must_use]
     pub fn sd(&self) -> Option<f64> {
         let values: Vec<f64> = self.differences.iter().map(|(_, difference)| *difference).collect();
         Moments::of(&values).sd
     }
 
     /// The difference that 80 % of experiments with the paper's number of trials would find.
-    #[must_use]
     pub(crate) fn least_found(&self) -> Option<f64> {
         detectable(self.sd()?, PAPERS_TRIALS as usize)
     }
@@ -242,7 +237,6 @@ impl Judged {
 
 /// The verdict on each claim over all calibrated worlds together: it holds if it holds in each world, and
 /// does not hold if it does not hold in one. `None` if there is only one such world.
-#[must_use]
 pub(crate) fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
     let calibrated: Vec<&Judged> = judged.iter().filter(|world| world.standing.is_in_ensemble()).collect();
     let verdict = |claim: usize| Verdict::over(calibrated.iter().map(|world| world.of_all[claim].verdict));
@@ -310,7 +304,6 @@ fn place_of(folder: &Folder, policy: &str) -> Result<usize, Failure> {
 
 impl Part {
     /// The comparison in words.
-    #[must_use]
     pub fn words(&self) -> String {
         let ([policy, metric], [other, other_metric], sign) = (self.a, self.b, self.claimed.sign());
         if metric == other_metric {

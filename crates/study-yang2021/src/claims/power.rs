@@ -49,7 +49,6 @@ pub struct Power {
 /// there are fewer than `TIMES` times `few` trials, since experiments drawn from them would be too similar.
 /// Verdicts follow the rules of [`super::judge`], but with paired t intervals, since thousands of
 /// bootstraps would take hours.
-#[must_use]
 pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
     let trials = trials_of(finding);
     if few < 2 || trials.len() < TIMES * few {

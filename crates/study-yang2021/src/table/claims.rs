@@ -2,9 +2,9 @@
 
 use comfy_table::{Cell, Table};
 use experiments::comparison::{digits, short};
-use reports::table::{headed, right};
+use reports::table::{between, headed, number, or_dash, right};
 
-use crate::claims::{CLAIMS, Example, Judged, PartFinding, Shares, Verdict, verdicts_over_worlds};
+use crate::claims::{CLAIMS, Example, Judged, Shares, Verdict, verdicts_over_worlds};
 use crate::scenarios::{PAPERS_TRIALS, Standing};
 
 /// The verdicts on each claim from a scenario's trials: a row for each comparison.
@@ -13,7 +13,6 @@ pub(crate) fn claims_table(judged: &Judged) -> Table {
     let all = format!("{} pairs", judged.trials);
     let mut table =
         headed(["claim", &few, &all, "difference", "95 % interval", "shared interval", "n", "first 10"]);
-    let difference = |found: &PartFinding| right(&found.difference.map_or("-".to_owned(), short));
     for ((claim, few), all) in CLAIMS.iter().zip(&judged.of_few).zip(&judged.of_all) {
         table.add_row([
             Cell::new(claim.words),
@@ -25,23 +24,15 @@ pub(crate) fn claims_table(judged: &Judged) -> Table {
                 Cell::new(format!("  {}", part.words())),
                 Cell::new(""),
                 Cell::new(""),
-                difference(all),
-                right(&interval(all.interval)),
-                right(&interval(all.shared_interval)),
+                number(all.difference),
+                right(&between(all.interval)),
+                right(&between(all.shared_interval)),
                 right(&all.differences.len().to_string()),
-                right(&format!(
-                    "{} ({})",
-                    few.difference.map_or("-".to_owned(), short),
-                    interval(few.interval)
-                )),
+                right(&format!("{} ({})", or_dash(few.difference, short), between(few.interval))),
             ]);
         }
     }
     table
-}
-
-fn interval(interval: Option<[f64; 2]>) -> String {
-    interval.map_or("-".to_owned(), |[low, high]| format!("{} to {}", short(low), short(high)))
 }
 
 /// The paper's examples with exact values.
@@ -62,16 +53,10 @@ pub(crate) fn examples_table(examples: &[Example]) -> Table {
 /// The verdicts expected from experiments of other sizes, and the differences that they find; `None` if
 /// there are too few trials.
 pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
-    let mut table = headed([
-        "claim",
-        "leans to",
-        "pairs for 80 %",
-        "of 10 pairs: holds",
-        "does not",
-        "undecided",
-        "difference",
-        "least found by 10",
-    ]);
+    let mut table = headed(
+        "claim,leans to,pairs for 80 %,of 10 pairs: holds,does not,undecided,difference,least found by 10"
+            .split(','),
+    );
     let share = |share: f64| right(&format!("{:.0} %", 100.0 * share));
     if judged.powers.iter().all(Option::is_none) {
         return None;
@@ -91,12 +76,12 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
             table.add_row([
                 Cell::new(format!("  {}", part.words())),
                 Cell::new(""),
-                right(&found.pairs_needed.map_or("-".to_owned(), |pairs| pairs.to_string())),
+                right(&or_dash(found.pairs_needed, |pairs| pairs.to_string())),
                 Cell::new(""),
                 Cell::new(""),
                 Cell::new(""),
-                right(&found.difference.map_or("-".to_owned(), short)),
-                right(&found.least_found().map_or("-".to_owned(), short)),
+                number(found.difference),
+                number(found.least_found()),
             ]);
         }
     }

@@ -7,7 +7,6 @@ use reports::table::{headed, right};
 use crate::calibration::{Fit, Judged, Spread, Target};
 
 /// The data, and a row for each candidate of a choice.
-#[must_use]
 pub fn choice_table(target: &Target, judged: &[Judged]) -> Table {
     let first = ["candidate", "misfit", "nearest in"].map(str::to_owned);
     let names = target.quantities.iter().map(|quantity| quantity.name.replace('_', " "));
@@ -26,7 +25,6 @@ pub fn choice_table(target: &Target, judged: &[Judged]) -> Table {
 }
 
 /// A row for each quantity of a calibration.
-#[must_use]
 pub fn fit_table(rows: &[Fit]) -> Table {
     let mut table = headed(["quantity", "data", "fitted", "fresh", "means apart by", "sd ratio"]);
     let spread = |mean: f64, sd: f64| right(&format!("{} ± {}", digits(mean, 4), digits(sd, 2)));

@@ -24,7 +24,6 @@ fn names(metrics: &Catalogue) -> impl Iterator<Item = Cell> {
 }
 
 /// Each reading by itself.
-#[must_use]
 pub fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
     let header = ["reading", "regrouped", "split otherwise", "trials"].map(Cell::new);
     let mut table = headed(header.into_iter().chain(names(metrics)));
@@ -38,7 +37,6 @@ pub fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
 }
 
 /// Each reading averaged over the others.
-#[must_use]
 pub fn averaged_table(rows: &[(String, Vec<Option<Difference>>)], metrics: &Catalogue) -> Table {
     let mut table = headed(std::iter::once(Cell::new("reading")).chain(names(metrics)));
     for (reading, row) in rows {
@@ -48,19 +46,10 @@ pub fn averaged_table(rows: &[(String, Vec<Option<Difference>>)], metrics: &Cata
 }
 
 /// All readings against other policies.
-#[must_use]
 pub fn rivals_table(rows: &[RivalRow]) -> Table {
-    let mut table = headed([
-        "metric",
-        "against",
-        "above",
-        "below",
-        "neither",
-        "corrected: above",
-        "corrected: below",
-        "least",
-        "greatest",
-    ]);
+    let mut table = headed(
+        "metric,against,above,below,neither,corrected: above,corrected: below,least,greatest".split(','),
+    );
     for row in rows {
         let end = |(reading, difference): &(String, Difference)| {
             Cell::new(format!("{} ± {} ({reading})", signed(difference.mean), digits(difference.half, 2)))

@@ -51,7 +51,6 @@ struct Maps {
 
 impl Belief {
     /// A belief about nothing.
-    #[must_use]
     pub fn nothing(inflation: &Inflation) -> Self {
         Self {
             debris: Table::default(),
@@ -68,7 +67,6 @@ impl Belief {
 
     /// The known obstacles, inflated for a robot of this radius, in metres: those of the smallest class whose
     /// radius is at least as large.
-    #[must_use]
     pub fn obstacles(&self, radius: f32) -> &ObstacleMap {
         let maps = &self.maps.obstacles;
         let class = maps.partition_point(|map| map.radius < radius);
@@ -76,14 +74,12 @@ impl Belief {
     }
 
     /// The radiation zones that are held to be on, with their numbers.
-    #[must_use]
     pub fn zones_on(&self) -> &[(u32, RadiationZone)] {
         &self.maps.zones_on
     }
 
     /// Number of rescuees that are believed to wait in a task with these rescuees: as many as were said to,
     /// without those that were reported gone since. None if nobody said.
-    #[must_use]
     pub fn waiting(&self, task: TaskId, rescuees: Range<usize>) -> Option<u32> {
         let said = self.tasks.get(task.index())?;
         let is_gone = |known: &&KnownRescuee| known.waits_at.is_none() && known.at_step > said.at_step;

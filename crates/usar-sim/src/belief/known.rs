@@ -21,7 +21,6 @@ pub struct KnownDebris {
 
 impl KnownDebris {
     /// The shape at its place.
-    #[must_use]
     pub fn outline(&self) -> Outline {
         Outline { shape: self.shape.clone(), pose: self.pose }
     }

@@ -34,7 +34,6 @@ impl Ledger {
     }
 
     /// The rounds that are over.
-    #[must_use]
     pub fn rounds(&self) -> &[RoundOutcome] {
         &self.rounds[..self.rounds.len() - usize::from(self.is_open)]
     }

@@ -19,7 +19,6 @@ pub struct Holder(u32);
 
 impl BeliefSharing {
     /// Number of beliefs in the field.
-    #[must_use]
     pub(crate) fn holders(self, tasks: usize, robots: usize) -> usize {
         match self {
             Self::WithGroup => tasks,
@@ -28,7 +27,6 @@ impl BeliefSharing {
     }
 
     /// The belief of a robot in the group of a task.
-    #[must_use]
     pub fn holder(self, robot: RobotId, task: TaskId) -> Holder {
         match self {
             Self::WithGroup => Holder(u32::from(task.0)),
@@ -59,7 +57,6 @@ pub struct Beliefs {
 
 impl Beliefs {
     /// Beliefs about nothing but the team.
-    #[must_use]
     pub fn nothing(holders: usize, inflation: &Inflation, team: Vec<Robot>) -> Self {
         let home = Belief::nothing(inflation);
         let (said_at, ledger) = (vec![0; team.len()], Ledger::empty(team.len()));
@@ -68,7 +65,6 @@ impl Beliefs {
 
     /// A belief in the field, or that of the team at home. The latter is what all had heard when the last
     /// round ended, and what robots without a group have reported since.
-    #[must_use]
     pub fn of(&self, holder: Option<Holder>) -> &Belief {
         holder.map_or(&self.home, |holder| &self.field[holder.0 as usize])
     }

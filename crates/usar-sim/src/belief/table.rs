@@ -14,7 +14,6 @@ impl<T> Default for Table<T> {
 
 impl<T> Table<T> {
     /// The thing of this number.
-    #[must_use]
     pub fn get(&self, number: usize) -> Option<&T> {
         self.0.get(number)?.as_ref()
     }

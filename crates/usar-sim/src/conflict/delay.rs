@@ -4,70 +4,38 @@ use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
 
-/// Why a robot does not move on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum DelayCause {
-    /// Nothing holds it up: it moves.
-    #[default]
-    UnderWay,
-    /// It is at its goal, or has none, and has nothing to do.
-    NothingToDo,
-    /// It takes a rescuee on board.
-    Loading,
-    /// It rests.
-    Resting,
-    /// It yields to a robot with the right of way.
-    RightOfWay,
-    /// Its route is blocked by debris or by a robot that stands or queues.
-    Blocked,
-    /// It makes room for a robot with the right of way, or gives way while it has nowhere to go.
-    MakingRoom,
-    /// Its whole conflict set was deadlocked and backs off.
-    BackingOff,
-    /// It knows no route to its goal.
-    NoRoute,
-    /// Its energy is 0.
-    Stranded,
-    /// Its HP is 0.
-    Disabled,
+ron_tree::named! {
+    /// Why a robot does not move on.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    pub enum DelayCause {
+        /// Nothing holds it up: it moves.
+        #[default]
+        UnderWay = "under_way",
+        /// It is at its goal, or has none, and has nothing to do.
+        NothingToDo = "nothing_to_do",
+        /// It takes a rescuee on board.
+        Loading = "loading",
+        /// It rests.
+        Resting = "resting",
+        /// It yields to a robot with the right of way.
+        RightOfWay = "right_of_way",
+        /// Its route is blocked by debris or by a robot that stands or queues.
+        Blocked = "blocked",
+        /// It makes room for a robot with the right of way, or gives way while it has nowhere to go.
+        MakingRoom = "making_room",
+        /// Its whole conflict set was deadlocked and backs off.
+        BackingOff = "backing_off",
+        /// It knows no route to its goal.
+        NoRoute = "no_route",
+        /// Its energy is 0.
+        Stranded = "stranded",
+        /// Its HP is 0.
+        Disabled = "disabled",
+    }
 }
 
 impl DelayCause {
-    /// All causes, in their order.
-    pub const ALL: [Self; 11] = [
-        Self::UnderWay,
-        Self::NothingToDo,
-        Self::Loading,
-        Self::Resting,
-        Self::RightOfWay,
-        Self::Blocked,
-        Self::MakingRoom,
-        Self::BackingOff,
-        Self::NoRoute,
-        Self::Stranded,
-        Self::Disabled,
-    ];
-
-    /// The cause as one word, for tables.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::UnderWay => "under_way",
-            Self::NothingToDo => "nothing_to_do",
-            Self::Loading => "loading",
-            Self::Resting => "resting",
-            Self::RightOfWay => "right_of_way",
-            Self::Blocked => "blocked",
-            Self::MakingRoom => "making_room",
-            Self::BackingOff => "backing_off",
-            Self::NoRoute => "no_route",
-            Self::Stranded => "stranded",
-            Self::Disabled => "disabled",
-        }
-    }
-
     /// Whether the robot would move if other robots let it.
-    #[must_use]
     pub fn is_waiting(self) -> bool {
         matches!(self, Self::RightOfWay | Self::Blocked)
     }
@@ -90,7 +58,6 @@ pub struct Delay {
 ///
 /// assert_eq!(wait_cycles(&[Some(1), Some(2), Some(1), None]), [vec![1, 2]]);
 /// ```
-#[must_use]
 pub fn wait_cycles(waits_for: &[Option<usize>]) -> Vec<Vec<usize>> {
     let mut visited_from = vec![usize::MAX; waits_for.len()];
     let mut cycles = Vec::new();

@@ -89,7 +89,6 @@ struct Step<'s, 'm, Rules, State> {
 
 impl Resolver {
     /// A resolver without conflicts.
-    #[must_use]
     pub fn new(model: &RightOfWayModel) -> Self {
         let rule = match model.rule {
             RuleKind::Reciprocal => Rule::Reciprocal(Reciprocal::default()),
@@ -126,7 +125,6 @@ impl Resolver {
     }
 
     /// The directives of the last step, by robot.
-    #[must_use]
     pub fn directives(&self) -> &[Directive] {
         &self.directives
     }

@@ -112,7 +112,6 @@ impl Directive {
     }
 
     /// The velocity that the drive is to reach.
-    #[must_use]
     pub fn velocity(self) -> Vector {
         match self {
             Self::Proceed(velocity)
@@ -125,7 +124,6 @@ impl Directive {
     }
 
     /// The robot that it waits for, if there is one.
-    #[must_use]
     pub fn waits_for(self) -> Option<RobotId> {
         match self {
             Self::Yield { to } => Some(to),

@@ -27,7 +27,6 @@ impl PriorityKey {
     ///   the order is worth.
     /// - `LowestHpFirst`: the robot that can bear the least radiation should stand in it for the shortest
     ///   time.
-    #[must_use]
     pub fn new(rule: PriorityRule, robot: RobotId, class: u8, [energy, hp]: [f64; 2]) -> Self {
         let (class, level) = match rule {
             PriorityRule::LowestEnergyFirst => (0, energy),
@@ -39,7 +38,6 @@ impl PriorityKey {
     }
 
     /// Compares two keys. `Less` means that `self` goes first.
-    #[must_use]
     pub(crate) fn precedence(&self, other: &Self) -> Ordering {
         let level = || self.level.total_cmp(&other.level);
         self.class.cmp(&other.class).then_with(level).then(self.robot.cmp(&other.robot))

@@ -11,7 +11,6 @@ pub use zone::RadiationZone;
 use parry2d::math::Vector;
 
 /// A point in the precision of the physics.
-#[must_use]
 pub fn vector([x, y]: [f64; 2]) -> Vector {
     Vector::new(x as f32, y as f32)
 }

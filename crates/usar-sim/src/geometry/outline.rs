@@ -15,26 +15,22 @@ pub struct Outline {
 
 impl Outline {
     /// A disc.
-    #[must_use]
     pub fn disc(center: Vector, radius: f32) -> Self {
         Self { shape: SharedShape::ball(radius), pose: Pose::from_translation(center) }
     }
 
     /// Distance from a point to the outline, in metres; 0 inside.
-    #[must_use]
     pub fn distance_to(&self, point: Vector) -> f32 {
         self.shape.distance_to_point(&self.pose, point, true)
     }
 
     /// Distance from a point to the outline, in metres; negative inside.
-    #[must_use]
     pub(crate) fn signed_distance(&self, point: Vector) -> f32 {
         self.shape.distance_to_point(&self.pose, point, false)
     }
 
     /// Corners, anticlockwise, of a convex polygon that contains every point within `by` metres of the
     /// outline, and little more.
-    #[must_use]
     pub fn inflated(&self, by: f32) -> Vec<Vector> {
         if let Some(ball) = self.shape.as_ball() {
             return ring(16, ball.radius + by).map(|offset| self.pose.translation + offset).collect();

@@ -25,14 +25,12 @@ impl Places {
     }
 
     /// The things whose boxes reach within this range of a point, in metres, separately in x and in y.
-    #[must_use]
     pub fn near(&self, point: Vector, range: f32) -> Found {
         let area = Aabb::from_half_extents(point, Vector::splat(range));
         self.find(|node| node.aabb().intersects(&area))
     }
 
     /// The things whose boxes the line from `a` to `b` touches.
-    #[must_use]
     pub fn along(&self, a: Vector, b: Vector) -> Found {
         let way = Ray::new(a, b - a);
         self.find(|node| node.cast_ray(&way, 1.0) <= 1.0)
@@ -40,7 +38,6 @@ impl Places {
 
     /// The things whose boxes reach within this range of the line from `a` to `b`, in metres, separately in x
     /// and in y.
-    #[must_use]
     pub fn beside(&self, a: Vector, b: Vector, range: f32) -> Found {
         let way = Ray::new(a, b - a);
         self.find(|node| node.aabb().loosened(range).cast_local_ray(&way, 1.0, true).is_some())

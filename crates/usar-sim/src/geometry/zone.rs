@@ -14,13 +14,11 @@ pub struct RadiationZone {
 
 impl RadiationZone {
     /// Whether a point lies inside.
-    #[must_use]
     pub fn contains(&self, point: Vector) -> bool {
         (point - self.center).length_squared() <= self.radius * self.radius
     }
 
     /// Length of the part of a straight line that lies inside the zone, in metres.
-    #[must_use]
     pub fn length_inside(&self, from: Vector, to: Vector) -> f32 {
         let way = to - from;
         let length = way.length();

@@ -109,7 +109,6 @@ pub struct Invariants {
 
 impl Invariants {
     /// The account before the next step, from the world as it is now.
-    #[must_use]
     pub fn new(model: &Model, world: &World) -> Self {
         let fastest = |aerial: bool| {
             let layer = world.robots.iter().filter(|robot| robot.is_aerial() == aerial);
@@ -134,7 +133,6 @@ impl Invariants {
     }
 
     /// How deep bodies have overlapped so far.
-    #[must_use]
     pub fn overlaps(&self) -> Overlaps {
         self.overlaps.total()
     }

@@ -32,7 +32,6 @@ pub enum Activity {
 
 impl Activity {
     /// The activity as one word, for tables.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Home => "home",
@@ -48,25 +47,21 @@ impl Activity {
     }
 
     /// Whether the robot works in the field: it is not at home, on its way back, resting, or on an errand.
-    #[must_use]
     pub fn is_in_field(self) -> bool {
         matches!(self, Self::Searching | Self::Approaching(_) | Self::Loading(..) | Self::Standby)
     }
 
     /// Whether the robot is at home, or on its way home or to rest. The team may wait for it.
-    #[must_use]
     pub(crate) fn is_way_back(self) -> bool {
         matches!(self, Self::Home | Self::Returning | Self::ToRest)
     }
 
     /// Whether the robot rests, or is on its way to rest.
-    #[must_use]
     pub fn is_rest(self) -> bool {
         matches!(self, Self::ToRest | Self::Resting(_))
     }
 
     /// The rescuee that the robot has claimed.
-    #[must_use]
     pub fn claim(self) -> Option<RescueeId> {
         match self {
             Self::Approaching(rescuee) | Self::Loading(rescuee, _) => Some(rescuee),

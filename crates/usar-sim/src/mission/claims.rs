@@ -35,19 +35,16 @@ impl Claims {
 
     /// Whether a rescuee's group gave up on it in this round, because it knows no way there or came no
     /// nearer.
-    #[must_use]
     pub fn has_given_up(&self, rescuee: RescueeId) -> bool {
         self.given_up[rescuee.index()]
     }
 
     /// The robot that claims a rescuee.
-    #[must_use]
     pub fn by(&self, rescuee: RescueeId) -> Option<RobotId> {
         self.by[rescuee.index()]
     }
 
     /// Number of claims made and given up so far.
-    #[must_use]
     pub fn changes(&self) -> u64 {
         self.changes
     }

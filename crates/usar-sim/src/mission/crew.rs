@@ -50,7 +50,6 @@ impl Crew {
     }
 
     /// The task of a robot's group in this round; none for a robot without a group.
-    #[must_use]
     pub(crate) fn group_of(&self, robot: RobotId) -> Option<TaskId> {
         self.agents[robot.index()].task
     }
@@ -61,7 +60,6 @@ impl Crew {
     }
 
     /// The belief on which a robot acts; none for the belief of the team at home.
-    #[must_use]
     pub(crate) fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {
         Some(model.mission.belief_sharing.holder(robot, self.group_of(robot)?))
     }
@@ -72,7 +70,6 @@ impl Crew {
 
     /// Top speed of a robot, in metres per second. It falls with its health and with its load, and in a group
     /// without a guide that can act.
-    #[must_use]
     pub fn speed_of(&self, model: &Model, robot: &Robot) -> f64 {
         let rules = &model.mission;
         let task = self.agents[robot.id.index()].task;

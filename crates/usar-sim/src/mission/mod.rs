@@ -72,14 +72,12 @@ pub enum Ending {
 
 impl Mission {
     /// A mission in which all robots are at home, or on their errands.
-    #[must_use]
     pub fn new(model: &Model) -> Self {
         let (crew, claims) = (Crew::new(model), Claims::nothing(model.rescuee_numbers()));
         Self { crew, claims, round: 0, ending: None, pending: None }
     }
 
     /// The question that waits for an assignment, if there is one.
-    #[must_use]
     pub fn question(&self) -> Option<&Question> {
         self.pending.as_ref().map(|pending| &pending.question)
     }

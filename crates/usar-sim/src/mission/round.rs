@@ -19,7 +19,6 @@ pub struct Fitness {
 }
 
 /// Why a robot must rest before it can take part in a round; `None` if it is fit.
-#[must_use]
 pub fn unfit_cause(rules: &MissionModel, robot: &Fitness) -> Option<TurnBackCause> {
     let is_low = |level: f64, low: LowLevel, cost: f64| {
         let expected = if low.turn_back == TurnBack::BeforeRound { level - cost } else { level };
@@ -36,7 +35,6 @@ pub fn unfit_cause(rules: &MissionModel, robot: &Fitness) -> Option<TurnBackCaus
 
 /// Why a robot must leave for its rest place now; `None` if it may stay. `way_cost` is the energy that the
 /// straight line to the rest place costs, in percent points.
-#[must_use]
 pub fn turn_back_cause(rules: &MissionModel, energy: f64, hp: f64, way_cost: f64) -> Option<TurnBackCause> {
     let at_once = |low: LowLevel, level: f64| low.turn_back == TurnBack::AtOnce && level < low.threshold;
     let keeps_reserve = rules.low_energy.turn_back != TurnBack::AfterRound;
@@ -50,7 +48,6 @@ pub fn turn_back_cause(rules: &MissionModel, energy: f64, hp: f64, way_cost: f64
 }
 
 /// How many steps a robot with these levels (energy and HP, in percent) rests.
-#[must_use]
 pub(crate) fn rest_steps(rules: &MissionModel, levels: [f64; 2]) -> u64 {
     let [once, twice] = rules.rest_steps;
     let fills_both = rules.rest_fills == RestFills::InTurn && levels.iter().all(|level| *level < 100.0);
@@ -58,7 +55,6 @@ pub(crate) fn rest_steps(rules: &MissionModel, levels: [f64; 2]) -> u64 {
 }
 
 /// Energy and HP after a rest, in percent.
-#[must_use]
 pub(crate) fn levels_after_rest(rules: &MissionModel, [energy, hp]: [f64; 2]) -> [f64; 2] {
     if rules.rest_fills != RestFills::Low {
         return [100.0; 2];
@@ -87,7 +83,6 @@ pub struct FieldState {
 }
 
 /// Why a group goes home now; `None` if it stays.
-#[must_use]
 pub fn return_cause(field: &FieldState) -> Option<ReturnCause> {
     if field.carrying_members == 0 {
         Some(ReturnCause::NobodyCanCarry)

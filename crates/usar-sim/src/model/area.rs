@@ -33,7 +33,6 @@ pub struct TaskArea {
 impl TaskArea {
     /// The area of one task. Waiting places are on the side that faces `home`. The area contains the waiting
     /// places of all `robots`, so that waiting robots share its resources.
-    #[must_use]
     pub fn new(scenario: &Scenario, file: &TaskFile, home: Vector, robots: usize) -> Self {
         let (center, half) = (vector(file.center), vector(file.size_m) / 2.0);
         let spacing = |kind| 2.0 * scenario.largest_radius_m(kind) as f32 + MUSTER_GAP_M;
@@ -53,14 +52,12 @@ impl TaskArea {
     }
 
     /// Whether a point lies in the area.
-    #[must_use]
     pub fn contains(&self, point: Vector) -> bool {
         let margin = Vector::splat(self.margin);
         point.cmpge(self.block_min - margin).all() && point.cmple(self.block_max + margin).all()
     }
 
     /// Centre of the block.
-    #[must_use]
     pub fn center(&self) -> Vector {
         (self.block_min + self.block_max) / 2.0
     }
@@ -68,7 +65,6 @@ impl TaskArea {
     /// The waypoints of a sweep by which a robot that sees `range` metres sees the whole block. The lanes run
     /// along the longer side and begin at the end nearer to home. The `rank`-th of `ranks` robots begins with
     /// a lane of its own, as far as there are enough lanes.
-    #[must_use]
     pub fn sweep(&self, range: f32, rank: usize, ranks: usize) -> Vec<Vector> {
         let size = self.block_max - self.block_min;
         let along_x = size.x >= size.y;
@@ -104,7 +100,6 @@ impl TaskArea {
     /// The waiting place of the `rank`-th of `ranks` aerial members. The places are side by side over the
     /// middle of the block, in as many rows as needed to stay in the area, so that the robots share its
     /// resources.
-    #[must_use]
     pub(crate) fn hover(&self, rank: usize, ranks: usize) -> Vector {
         let width = self.block_max.x - self.block_min.x + 2.0 * self.margin;
         let per_row = ((width / self.air_spacing).floor() as usize).max(1);
@@ -117,7 +112,6 @@ impl TaskArea {
 
     /// The waiting place of the `rank`-th member. The places form rows in the margin, on the side that faces
     /// home.
-    #[must_use]
     pub fn muster(&self, rank: usize) -> Vector {
         let toward = self.home - self.center();
         let half = (self.block_max - self.block_min) / 2.0;

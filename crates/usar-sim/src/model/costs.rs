@@ -33,14 +33,12 @@ impl CostModel {
     }
 
     /// Energy and HP of one step at this speed, in metres per second, in `zones` overlapping radiation zones.
-    #[must_use]
     pub(crate) fn of_step(&self, speed: f32, moves: bool, zones: usize) -> [f64; 2] {
         let metres = f64::from(speed) * self.dt_s;
         [energy_cost(&self.energy, moves, metres, self.dt_s), hp_cost(&self.hp, zones, metres, self.dt_s)]
     }
 
     /// Energy of a way of this length, driven at this speed.
-    #[must_use]
     pub(crate) fn of_way(&self, metres: f64, speed: f64) -> f64 {
         let seconds = metres / speed.max(1e-3);
         seconds * self.driving_energy_per_second + metres * self.energy.per_metre

@@ -59,13 +59,11 @@ impl DebrisModel {
     }
 
     /// Whether nothing can push it.
-    #[must_use]
     pub fn is_fixed(&self) -> bool {
         self.masses.is_none()
     }
 
     /// Whether events place or remove it.
-    #[must_use]
     pub fn is_gate(&self) -> bool {
         self.gate.is_some()
     }

@@ -128,13 +128,7 @@ impl Layout {
                         .all(|other| f64::from(other.outline().distance_to(vector(at))) >= radius + gap)
             });
             let (at, radius) = place.ok_or_else(|| no_room("debris", i, debris))?;
-            self.debris.push(DebrisFile {
-                shape: DebrisShape::Disc(radius),
-                at,
-                rotation_deg: 0.0,
-                movable: None,
-                name: None,
-            });
+            self.debris.push(DebrisFile::fixed(DebrisShape::Disc(radius), at));
         }
         for i in 0..radiation {
             let mut draws = stream(seed, Purpose::SampledRadiation, entity(i));

@@ -67,7 +67,6 @@ pub struct MissionModel {
 
 impl MissionModel {
     /// Compiles rules for steps of `dt_s` seconds.
-    #[must_use]
     pub fn compile(rules: &MissionRules, dt_s: f64) -> Self {
         let steps = |seconds: f64| (seconds / dt_s).round() as u64;
         Self {

@@ -120,7 +120,6 @@ pub struct ZoneModel {
 impl Model {
     /// Compiles the model of the trial of this seed. The scenario must have no distributions left (see
     /// [`Scenario::of_trial`]), and the layout must be its own (see [`Layout::sample`]).
-    #[must_use]
     pub fn compile(scenario: &Scenario, layout: &Layout, seed: u64) -> Self {
         let dt_s = scenario.dt_s;
         let robots = RobotModel::compile_all(scenario, &layout.robots);
@@ -164,13 +163,11 @@ impl Model {
     }
 
     /// Length of a step, in seconds.
-    #[must_use]
     pub fn dt_s(&self) -> f64 {
         self.dt_s
     }
 
     /// Number of steps in this many seconds.
-    #[must_use]
     pub(crate) fn steps_in(&self, seconds: f64) -> u64 {
         (seconds / self.dt_s).round() as u64
     }

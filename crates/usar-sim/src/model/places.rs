@@ -26,7 +26,6 @@ pub struct RestSlots {
 
 impl RestSlots {
     /// The slots of a scenario's team, in O(rows of the team).
-    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let robots = scenario.robots();
         let columns = robots.isqrt() + u32::from(robots.isqrt().pow(2) < robots);
@@ -44,7 +43,6 @@ impl RestSlots {
     ///
     /// # Panics
     /// The scenario has no such task, or no robot at all.
-    #[must_use]
     pub fn at(&self, task: TaskId, robot: RobotId) -> Vector {
         let offset = |i: u32, count: u32| self.spacing * (f64::from(i) - f64::from(count - 1) / 2.0);
         let center = self.centers[task.index()];

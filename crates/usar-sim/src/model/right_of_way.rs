@@ -136,7 +136,6 @@ pub struct RetreatModel {
 
 impl RightOfWayModel {
     /// Compiles the rules of a scenario.
-    #[must_use]
     pub fn compile(scenario: &Scenario) -> Self {
         let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
         let values = scenario.conflicts.right_of_way();

@@ -115,25 +115,21 @@ impl RobotModel {
     }
 
     /// Whether it flies.
-    #[must_use]
     pub fn is_aerial(&self) -> bool {
         self.spec.is_aerial
     }
 
     /// Whether it can take rescuees on board at all.
-    #[must_use]
     pub fn can_carry(&self) -> bool {
         self.spec.capacity > 0
     }
 
     /// Radius, in metres.
-    #[must_use]
     pub fn radius(&self) -> f32 {
         self.spec.radius
     }
 
     /// Its place at the rest place of a task.
-    #[must_use]
     pub fn rest_slot(&self, task: TaskId) -> Vector {
         self.rest[task.index()]
     }

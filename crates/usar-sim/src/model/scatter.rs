@@ -51,14 +51,8 @@ impl Layout {
     fn put(&mut self, entry: &Scatter, at: Point, radius_m: f64) {
         match entry.what {
             Scattered::Debris => {
-                let shape = DebrisShape::Disc(radius_m);
-                self.debris.push(DebrisFile {
-                    shape,
-                    at,
-                    rotation_deg: 0.0,
-                    movable: entry.movable,
-                    name: None,
-                });
+                let piece = DebrisFile::fixed(DebrisShape::Disc(radius_m), at);
+                self.debris.push(DebrisFile { movable: entry.movable, ..piece });
             }
             Scattered::Radiation => self.zones.push(ZoneFile { at, radius_m, name: None }),
         }

@@ -152,19 +152,16 @@ impl TelemetryModel {
     }
 
     /// The levels that a robot counts with that was never heard, in percent.
-    #[must_use]
     pub fn mean_levels(&self) -> [f64; 2] {
         self.initial.map(|expected| expected.mean)
     }
 
     /// Ids of the robots that tell a lie, sooner or later.
-    #[must_use]
     pub fn liars(&self) -> Vec<u32> {
         (0..).zip(&self.is_liar).filter(|(_, lies)| **lies).map(|(id, _)| id).collect()
     }
 
     /// Whether a robot is one of these mates.
-    #[must_use]
     pub fn is_of(&self, mates: Mates, robot: RobotId) -> bool {
         let is_liar = self.is_liar[robot.index()];
         match mates {

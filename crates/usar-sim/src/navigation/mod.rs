@@ -61,13 +61,11 @@ pub struct Outlook<'o, B, S> {
 
 impl Navigator {
     /// A navigator of robots without goals.
-    #[must_use]
     pub fn new(robots: usize) -> Self {
         Self { travellers: vec![Traveller::to(None); robots], trails: vec![Trail::default(); robots] }
     }
 
     /// The journey of one robot.
-    #[must_use]
     pub fn traveller(&self, robot: RobotId) -> &Traveller {
         &self.travellers[robot.index()]
     }
@@ -80,7 +78,6 @@ impl Navigator {
     }
 
     /// Places that a robot passed, the latest last.
-    #[must_use]
     pub fn trail(&self, robot: RobotId) -> &[Vector] {
         self.trails[robot.index()].points()
     }
@@ -118,7 +115,6 @@ impl Navigator {
 
     /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero
     /// if the robot has no route or has arrived.
-    #[must_use]
     pub(crate) fn preferred_velocity(&self, robot: &Robot, speed: f32) -> Vector {
         let traveller = &self.travellers[robot.id.index()];
         let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {

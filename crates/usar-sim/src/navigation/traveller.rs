@@ -109,44 +109,37 @@ impl Traveller {
     }
 
     /// The goal of the robot, if it has one.
-    #[must_use]
     pub fn goal(&self) -> Option<Goal> {
         self.goal
     }
 
     /// The route, if there is one.
-    #[must_use]
     pub fn route(&self) -> Option<&Route> {
         self.route.as_ref()
     }
 
     /// The narrow passages of the route.
-    #[must_use]
     pub(crate) fn passages(&self) -> &[Passage] {
         &self.passages
     }
 
     /// Whether a robot at this position is at its goal, or at the end of its route.
-    #[must_use]
     pub fn has_arrived(&self, position: Vector) -> bool {
         self.goal.is_some_and(|goal| is_near(position, goal.point, goal.within))
             || self.route.as_ref().is_some_and(|route| is_near(position, route.end(), ROUTE_END_M))
     }
 
     /// Steps since the robot last came nearer to its goal.
-    #[must_use]
     pub fn stalled_steps(&self) -> u64 {
         self.stalled_steps
     }
 
     /// Whether the planner found no route to the goal.
-    #[must_use]
     pub(crate) fn leads_nowhere(&self) -> bool {
         self.goal.is_some() && self.is_planned && self.route.is_none()
     }
 
     /// Steps for which the robot has known no route to its goal.
-    #[must_use]
     pub(crate) fn lost_steps(&self) -> u64 {
         self.lost_steps
     }

@@ -19,7 +19,6 @@ pub struct Inflation {
 
 impl Inflation {
     /// The inflation for the robots of a scenario.
-    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self {
             radii: scenario.ground_radii_m().iter().map(|radius| *radius as f32).collect(),
@@ -28,7 +27,6 @@ impl Inflation {
     }
 
     /// Empty maps, one for each class of radii.
-    #[must_use]
     pub fn maps(&self) -> Vec<ObstacleMap> {
         let map = |radius: &f32| ObstacleMap {
             radius: *radius,
@@ -71,7 +69,6 @@ impl ObstacleMap {
     }
 
     /// A hash of the whole map: maps with the same obstacles have the same.
-    #[must_use]
     pub(crate) fn digest(&self) -> u64 {
         self.digest
     }
@@ -82,13 +79,11 @@ impl ObstacleMap {
     }
 
     /// The obstacle of a number.
-    #[must_use]
     pub(crate) fn number(&self, number: usize) -> &KnownObstacle {
         &self.obstacles[number]
     }
 
     /// The obstacle of this key, if there is one.
-    #[must_use]
     pub fn get(&self, key: ObstacleKey) -> Option<&KnownObstacle> {
         self.slots.get(&key).map(|slot| &self.obstacles[*slot])
     }
@@ -114,13 +109,11 @@ impl ObstacleMap {
     }
 
     /// Whether an obstacle cuts the line from `a` to `b`.
-    #[must_use]
     pub(crate) fn cuts(&self, a: Vector, b: Vector) -> bool {
         self.along(a, b).any(|obstacle| obstacle.cuts(a, b))
     }
 
     /// Whether a point is so near to an obstacle that routes do not lead through it.
-    #[must_use]
     pub(crate) fn covers(&self, point: Vector) -> bool {
         self.near(point, 0.0).any(|obstacle| contains(&obstacle.planned, point))
     }

@@ -72,7 +72,6 @@ pub struct Query<'a> {
 
 impl Planner {
     /// A planner for a scenario.
-    #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
         let clearance = scenario.planning.clearance_m;
         Self {
@@ -96,7 +95,6 @@ impl Planner {
 
     /// The cheapest route, or `None` if there is none. Its last waypoint is the goal, or the free point
     /// nearest to the goal if the goal lies within the clearance of an obstacle.
-    #[must_use]
     pub fn route(&self, query: &Query, meshes: &mut Meshes) -> Option<Route> {
         let mut closed = Vec::new();
         let mut best = self.route_around(query, &closed, meshes)?;
@@ -128,7 +126,6 @@ impl Planner {
 
     /// The first of these places that a ground robot of this radius cannot reach among these outlines,
     /// neither from `from` nor from a place before it.
-    #[must_use]
     pub(crate) fn first_unreachable<'p, T>(
         &self,
         radius: f32,
@@ -153,7 +150,6 @@ impl Planner {
     }
 
     /// Length of a route plus the price of its exposure, in metres.
-    #[must_use]
     pub fn cost(&self, query: &Query, route: &Route) -> f32 {
         let inside: f32 = query.zones.iter().map(|(_, zone)| route.length_inside(query.from, zone)).sum();
         route.length(query.from) + self.exposure_price_m * inside / query.speed.max(0.01)

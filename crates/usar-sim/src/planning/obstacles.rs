@@ -43,7 +43,6 @@ pub struct KnownObstacle {
 
 impl KnownObstacle {
     /// An outline inflated for robots of `radius` that keep `clearance`, in metres.
-    #[must_use]
     pub fn new(key: ObstacleKey, outline: &Outline, radius: f32, clearance: f32) -> Self {
         let planned = outline.inflated(radius + clearance);
         let tight = outline.inflated(radius + clearance / 3.0);
@@ -66,7 +65,6 @@ impl KnownObstacle {
     }
 
     /// Whether its inflated outline may reach within this range of a point, in metres.
-    #[must_use]
     pub fn may_reach(&self, point: Vector, range: f32) -> bool {
         (point - point.clamp(self.bounds.mins, self.bounds.maxs)).abs().max_element() <= range
     }
@@ -91,7 +89,6 @@ impl KnownObstacle {
     }
 
     /// A robot that can no longer move, as an obstacle.
-    #[must_use]
     pub(crate) fn wreck(number: u32, at: Vector, own_radius: f32, radius: f32, clearance: f32) -> Self {
         let outline = Outline { shape: SharedShape::ball(own_radius), ..Outline::disc(at, own_radius) };
         Self::new(ObstacleKey::Wreck(number), &outline, radius, clearance)
@@ -99,7 +96,6 @@ impl KnownObstacle {
 }
 
 /// Whether a convex polygon (anticlockwise) contains a point.
-#[must_use]
 pub fn contains(polygon: &[Vector], point: Vector) -> bool {
     edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
 }
@@ -112,7 +108,6 @@ pub(super) fn touches(polygon: &[Vector], point: Vector) -> bool {
 
 /// Whether the line from `a` to `b` crosses the inside of a convex polygon (anticlockwise). Clips the line by
 /// each edge (Cyrus and Beck) and tests whether more than a grazing touch is left.
-#[must_use]
 pub fn crosses(polygon: &[Vector], a: Vector, b: Vector) -> bool {
     is_clipped(polygon, 0.0, a, b)
 }
@@ -196,13 +191,11 @@ fn nearest_outside(polygon: &[Vector], point: Vector) -> Vector {
 }
 
 /// The unit vector of the shortest exit from a convex polygon (anticlockwise) that contains a point.
-#[must_use]
 pub fn outward_normal(polygon: &[Vector], point: Vector) -> Vector {
     nearest_edge(polygon, point).0
 }
 
 /// The point on a polygon's border that is nearest to a point.
-#[must_use]
 pub fn nearest_border_point(polygon: &[Vector], point: Vector) -> Vector {
     let on_edge = |(a, b): (Vector, Vector)| {
         let edge = b - a;

@@ -44,7 +44,6 @@ pub struct Walls<'a> {
 
 impl Walls<'_> {
     /// The narrow passages of a route from a position, in order.
-    #[must_use]
     pub(crate) fn passages(&self, from: Vector, route: &Route) -> Vec<Passage> {
         let mut passages: Vec<Passage> = Vec::new();
         let mut left = route.length(from);

@@ -17,26 +17,22 @@ pub struct Route {
 
 impl Route {
     /// A route along these waypoints; there must be at least one.
-    #[must_use]
     pub fn new(waypoints: Vec<Vector>) -> Self {
         debug_assert!(!waypoints.is_empty());
         Self { waypoints, next: 0 }
     }
 
     /// Number of the next waypoint.
-    #[must_use]
     pub(crate) fn next(&self) -> usize {
         self.next
     }
 
     /// Waypoints still to pass; never empty.
-    #[must_use]
     pub fn ahead(&self) -> &[Vector] {
         &self.waypoints[self.next..]
     }
 
     /// The end of the route.
-    #[must_use]
     pub fn end(&self) -> Vector {
         self.waypoints[self.waypoints.len() - 1]
     }
@@ -56,13 +52,11 @@ impl Route {
     }
 
     /// Length from a position along the waypoints ahead, in metres.
-    #[must_use]
     pub fn length(&self, from: Vector) -> f32 {
         self.legs(from).map(|(a, b)| (b - a).length()).sum()
     }
 
     /// Length inside a radiation zone, in metres.
-    #[must_use]
     pub fn length_inside(&self, from: Vector, zone: &RadiationZone) -> f32 {
         self.legs(from).map(|(a, b)| zone.length_inside(a, b)).sum()
     }

@@ -24,14 +24,12 @@ pub(super) fn carried(path: &Path) -> Option<&'static str> {
 }
 
 /// The path that a file names, from the file's own folder; that of a carried file is whole.
-#[must_use]
 pub fn beside(file: &Path, named: &str) -> PathBuf {
     let folder = file.parent().filter(|_| !named.starts_with(CARRIED));
     folder.unwrap_or(Path::new("")).join(named)
 }
 
 /// Whether a path is that of a file, on disk or carried.
-#[must_use]
 pub fn is_file(path: &Path) -> bool {
     path.is_file() || carried(path).is_some()
 }

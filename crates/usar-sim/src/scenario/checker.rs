@@ -118,7 +118,6 @@ pub const NOT_MISTAKEN: &str = "must not be what readers of tables take for a nu
 /// assert!(["NA", "None", "nan", "null", "1e5", "true"].into_iter().all(is_mistaken));
 /// assert!(!is_mistaken("north") && !is_mistaken("a1e5"));
 /// ```
-#[must_use]
 pub fn is_mistaken(name: &str) -> bool {
     let words = ["na", "none", "null", "nil", "true", "false"];
     words.contains(&name.to_ascii_lowercase().as_str()) || name.parse::<f64>().is_ok()

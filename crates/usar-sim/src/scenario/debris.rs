@@ -35,6 +35,13 @@ pub struct DebrisFile {
     pub name: Option<String>,
 }
 
+impl DebrisFile {
+    /// A fixed piece without a name, not rotated.
+    pub fn fixed(shape: DebrisShape, at: Point) -> Self {
+        Self { shape, at, rotation_deg: 0.0, movable: None, name: None }
+    }
+}
+
 /// Outline of a piece of debris.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum DebrisShape {

@@ -392,7 +392,6 @@ fn may_be_one(a: &Who, b: &Who) -> bool {
 
 impl Scenario {
     /// Whether the base goes by reports: robots report, a medium carries what they say, or robots lie.
-    #[must_use]
     pub fn goes_by_reports(&self) -> bool {
         let is_about_reports = |event: &Happening| {
             matches!(

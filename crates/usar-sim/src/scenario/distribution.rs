@@ -37,7 +37,6 @@ pub enum Distribution {
 
 impl Distribution {
     /// The least and the greatest value; infinite for a normal distribution.
-    #[must_use]
     pub fn support(&self) -> [f64; 2] {
         match self {
             Self::Uniform(least, most) => [*least, *most],
@@ -56,7 +55,6 @@ impl Distribution {
     }
 
     /// The problem of an invalid distribution, as the rest of a sentence: `must ...`.
-    #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
         let fault = self.fault_inside();
         fault.or_else(|| {
@@ -93,7 +91,6 @@ impl Distribution {
     }
 
     /// One draw. For a `whole` number, every number of a `Uniform` is equally likely.
-    #[must_use]
     pub fn draw(&self, stream: &mut ChaCha8Rng, whole: bool) -> f64 {
         match self {
             Self::Uniform(least, most) if whole => {
@@ -137,7 +134,6 @@ pub enum Amount {
 
 impl Amount {
     /// The least and the greatest value.
-    #[must_use]
     pub fn support(&self) -> [f64; 2] {
         match self {
             Self::Fixed(value) => [*value; 2],
@@ -146,7 +142,6 @@ impl Amount {
     }
 
     /// The value of one thing.
-    #[must_use]
     pub fn draw(&self, stream: &mut ChaCha8Rng) -> f64 {
         match self {
             Self::Fixed(value) => *value,

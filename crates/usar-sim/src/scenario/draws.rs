@@ -173,7 +173,6 @@ impl ScenarioFile {
     }
 
     /// The whole file as a tree.
-    #[must_use]
     pub fn tree(&self) -> Node {
         let mut tree = self.plain_tree();
         for (path, written) in &self.draws {
@@ -285,7 +284,6 @@ impl ScenarioFile {
 
 impl Scenario {
     /// Whether trials differ by more than their initial levels.
-    #[must_use]
     pub fn is_drawn(&self) -> bool {
         let samples = |task: &super::TaskFile| task.sampled != super::SampledCounts::default();
         !self.draws.is_empty() || !self.scatter.is_empty() || self.tasks.iter().any(samples)

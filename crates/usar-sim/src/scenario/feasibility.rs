@@ -94,14 +94,7 @@ fn places(check: &mut Checker, file: &ScenarioFile) {
 }
 
 fn is_in_the_way(wall: &Outline, task: &TaskFile) -> bool {
-    let block = DebrisFile {
-        shape: DebrisShape::Box(task.size_m[0], task.size_m[1]),
-        at: task.center,
-        rotation_deg: 0.0,
-        movable: None,
-        name: None,
-    };
-    let block = block.outline();
+    let block = DebrisFile::fixed(DebrisShape::Box(task.size_m[0], task.size_m[1]), task.center).outline();
     distance(&wall.pose, &*wall.shape, &block.pose, &*block.shape).is_ok_and(|found| found.distance <= 0.0)
 }
 

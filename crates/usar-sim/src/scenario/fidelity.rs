@@ -42,7 +42,6 @@ impl Fidelity {
 
 impl ScenarioFile {
     /// Length of a step of a trial, in seconds.
-    #[must_use]
     pub fn step_s(&self) -> f64 {
         match self.fidelity {
             Fidelity::AsWritten => self.dt_s,

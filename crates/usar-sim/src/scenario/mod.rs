@@ -167,38 +167,32 @@ impl Scenario {
     }
 
     /// Whether a policy, by its name with its options, may run in this scenario.
-    #[must_use]
     pub fn allows(&self, policy: &str) -> bool {
         self.only_policy.is_empty() || self.only_policy == policy
     }
 
     /// The whole scenario with every value, as text, with one line for each entry of a list.
-    #[must_use]
     pub fn resolved(&self) -> String {
         self.tree().pretty() + "\n"
     }
 
     /// Number of simulation steps in a trial.
-    #[must_use]
     pub fn steps(&self) -> u64 {
         (self.duration_s / self.step_s()).round() as u64
     }
 
     /// Number of robots.
-    #[must_use]
     pub fn robots(&self) -> u32 {
         self.team.iter().map(|row| row.count).sum()
     }
 
     /// The role of a row of the team.
-    #[must_use]
     pub fn role_of(&self, row: &Row) -> RoleId {
         let place = self.roles.iter().position(|role| role.name == row.role);
         RoleId(place.unwrap_or_default() as u16)
     }
 
     /// The tasks from the hardest to the easiest.
-    #[must_use]
     pub fn hardest_first(&self) -> Vec<TaskId> {
         hardest_first(self.tasks.iter().map(|task| task.difficulty))
     }
@@ -206,7 +200,6 @@ impl Scenario {
     /// Radii for which ground routes are planned, in ascending order, in metres: those of the team's ground
     /// robots. If there are more than [`MAX_RADIUS_CLASSES`], robots use the routes of the next larger radius
     /// that is kept. There is at least one radius; it is 0 if the team has no ground robot.
-    #[must_use]
     pub(crate) fn ground_radii_m(&self) -> Vec<f64> {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));
         let ground = roles.filter(|role| role.kind == RoleKind::Ground);
@@ -221,7 +214,6 @@ impl Scenario {
     }
 
     /// Radius of the largest robot of this kind in the team, in metres; 0 if there is none.
-    #[must_use]
     pub(crate) fn largest_radius_m(&self, kind: RoleKind) -> f64 {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));
         roles.filter(|role| role.kind == kind).map(|role| role.radius_m).fold(0.0, f64::max)

@@ -5,14 +5,13 @@ use parry2d::shape::SharedShape;
 
 use super::debris::ROUNDING_M;
 use super::file::{
-    ConflictRules, DebrisFile, DebrisShape, ResolverRule, RightOfWay, RoleFile, Row, ScenarioFile, WallFile,
-    ZoneFile,
+    ConflictRules, DebrisFile, DebrisShape, Door, ResolverRule, RightOfWay, RoleFile, Row, ScenarioFile,
+    WallFile, ZoneFile,
 };
 use crate::geometry::{Outline, RadiationZone, vector};
 
 impl DebrisFile {
     /// The outline of a piece of debris as the scenario places it. The shape must have been validated.
-    #[must_use]
     pub fn outline(&self) -> Outline {
         let shape = match &self.shape {
             DebrisShape::Disc(radius) => SharedShape::ball(*radius as f32),
@@ -32,7 +31,6 @@ impl DebrisFile {
 
 impl WallFile {
     /// Length of its middle line, in metres.
-    #[must_use]
     pub(crate) fn length_m(&self) -> f64 {
         libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1])
     }
@@ -40,34 +38,34 @@ impl WallFile {
     /// The parts of the wall between its doors, as fixed debris. Parts shorter than the wall's thickness are
     /// left out.
     pub fn pieces(&self) -> impl Iterator<Item = DebrisFile> + use<> {
-        let (from, length) = (self.from, self.length_m());
-        let along = [(self.to[0] - from[0]) / length, (self.to[1] - from[1]) / length];
-        let rotation_deg = libm::atan2(along[1], along[0]).to_degrees();
         let mut doors = self.doors.clone();
         doors.sort_by(|a, b| a.at_m.total_cmp(&b.at_m));
-        let begins =
-            std::iter::once(0.0).chain(doors.clone().into_iter().map(|door| door.at_m + door.width_m / 2.0));
-        let ends = doors.into_iter().map(|door| door.at_m - door.width_m / 2.0).chain([length]);
-        let thickness = self.thickness_m;
-        begins.zip(ends).filter(move |(begin, end)| end - begin >= thickness - ROUNDING_M).map(
-            move |(begin, end)| {
-                let middle = f64::midpoint(begin, end);
-                let at = [from[0] + along[0] * middle, from[1] + along[1] * middle];
-                DebrisFile {
-                    shape: DebrisShape::Box(end - begin, thickness),
-                    at,
-                    rotation_deg,
-                    movable: None,
-                    name: None,
-                }
-            },
-        )
+        let begins = doors.clone().into_iter().map(|door| door.at_m + door.width_m / 2.0);
+        let ends = doors.into_iter().map(|door| door.at_m - door.width_m / 2.0).chain([self.length_m()]);
+        let (wall, least) = (self.clone(), self.thickness_m - ROUNDING_M);
+        let parts = std::iter::once(0.0).chain(begins).zip(ends);
+        parts
+            .filter(move |(begin, end)| end - begin >= least)
+            .map(move |(begin, end)| wall.part(f64::midpoint(begin, end), end - begin))
+    }
+
+    /// The panel that closes a door.
+    pub fn panel(&self, door: &Door) -> DebrisFile {
+        DebrisFile { name: door.name.clone(), ..self.part(door.at_m, door.width_m) }
+    }
+
+    /// A piece of the wall of this length, whose middle is at this distance from its begin, in metres.
+    fn part(&self, middle_m: f64, part_m: f64) -> DebrisFile {
+        let (from, length) = (self.from, self.length_m());
+        let along = [(self.to[0] - from[0]) / length, (self.to[1] - from[1]) / length];
+        let at = [from[0] + along[0] * middle_m, from[1] + along[1] * middle_m];
+        let rotation_deg = libm::atan2(along[1], along[0]).to_degrees();
+        DebrisFile { rotation_deg, ..DebrisFile::fixed(DebrisShape::Box(part_m, self.thickness_m), at) }
     }
 }
 
 impl ScenarioFile {
     /// Debris at known places, followed by the parts of the walls.
-    #[must_use]
     pub fn obstacles(&self) -> Vec<DebrisFile> {
         let mut all = self.debris.clone();
         all.extend(self.walls.iter().flat_map(WallFile::pieces));
@@ -87,7 +85,6 @@ impl ScenarioFile {
 
     /// Properties and abilities of the robots of a row: their role's, with the changes of the row. `None` if
     /// the scenario has no such role.
-    #[must_use]
     pub fn body_of(&self, row: &Row) -> Option<RoleFile> {
         let mut body = self.roles.iter().find(|role| role.name == row.role)?.clone();
         if let Some(other) = row.body {
@@ -109,7 +106,6 @@ impl ScenarioFile {
 
 impl ConflictRules {
     /// The values of the paper's rule; the defaults under another resolver.
-    #[must_use]
     pub(crate) fn right_of_way(&self) -> RightOfWay {
         match self.resolver {
             ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) => rule,
@@ -120,13 +116,17 @@ impl ConflictRules {
 
 impl ZoneFile {
     /// The radiation zone at its place.
-    #[must_use]
     pub fn zone(&self) -> RadiationZone {
         RadiationZone { center: vector(self.at), radius: self.radius_m as f32 }
     }
 }
 
 impl Row {
+    /// One robot of a role at a place.
+    pub fn of_one(role: &str, center: [f64; 2]) -> Self {
+        Self { role: role.to_owned(), count: 1, center, width_m: 0.0, levels: None, body: None }
+    }
+
     /// Places of the robots of a row, side by side.
     pub fn places(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
         let Self { count, center, width_m, .. } = *self;

@@ -38,7 +38,6 @@ pub enum CostUnit {
 
 impl CostUnit {
     /// Converts a cost to percent of the maximum of the robot that bears it.
-    #[must_use]
     pub(crate) fn to_percent(self, cost: f64, maximum: f64) -> f64 {
         match self {
             Self::Percent => cost,
@@ -47,7 +46,6 @@ impl CostUnit {
     }
 
     /// Converts a share of a robot's maximum, in percent, to a cost.
-    #[must_use]
     pub(crate) fn of_percent(self, percent: f64, maximum: f64) -> f64 {
         match self {
             Self::Percent => percent,

@@ -53,14 +53,12 @@ pub enum Placement {
 
 impl Scatter {
     /// The corners of its region: lower left and upper right.
-    #[must_use]
     pub fn region(&self, arena_m: Point) -> [Point; 2] {
         let [a, b] = self.within.unwrap_or([[0.0, 0.0], arena_m]);
         [[a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), a[1].max(b[1])]]
     }
 
     /// Free distance between two of its things, in metres; `None` if they may overlap.
-    #[must_use]
     pub fn gap_m(&self) -> Option<f64> {
         match (self.place, self.what) {
             (Placement::Poisson(gap), _) => Some(gap),

@@ -83,7 +83,6 @@ impl JsonSchema for WallFile {
 /// The JSON Schema of a scenario file. Structs are objects, and lists and tuples are arrays. A distribution
 /// may stand in place of any number, as `{"Uniform": [2, 5]}`. A scenario over a base gives only the fields
 /// that differ.
-#[must_use]
 pub fn scenario_schema() -> Value {
     let mut generator = SchemaSettings::draft2020_12().into_generator();
     generator.subschema_for::<Distribution>();

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checker::{Checker, meant, shown};
 use super::deceit::{self, Channel, Lie};
-use super::file::{DebrisFile, DebrisShape, Door, Point, ScenarioFile, TaskFile, WallFile, ZoneFile};
+use super::file::{DebrisFile, DebrisShape, Point, ScenarioFile, TaskFile, ZoneFile};
 use crate::limits;
 
 /// Something that happens at its time.
@@ -111,7 +111,6 @@ pub enum Happening {
 
 impl Happening {
     /// The piece of debris that falls in this event, if one falls.
-    #[must_use]
     pub(crate) fn falling(&self) -> Option<DebrisFile> {
         let Self::DebrisFalls { shape, at, rotation_deg, name } = self else { return None };
         let (shape, name) = (shape.clone(), name.clone());
@@ -119,39 +118,22 @@ impl Happening {
     }
 
     /// The radiation source that appears in this event, if one appears.
-    #[must_use]
     pub fn source(&self) -> Option<ZoneFile> {
         let Self::SourceAppears { at, radius_m, name } = self else { return None };
         Some(ZoneFile { at: *at, radius_m: *radius_m, name: name.clone() })
     }
 }
 
-impl WallFile {
-    /// The panel that closes a door.
-    #[must_use]
-    pub fn panel(&self, door: &Door) -> DebrisFile {
-        let (from, length) = (self.from, self.length_m());
-        let along = [(self.to[0] - from[0]) / length, (self.to[1] - from[1]) / length];
-        DebrisFile {
-            shape: DebrisShape::Box(door.width_m, self.thickness_m),
-            at: [from[0] + along[0] * door.at_m, from[1] + along[1] * door.at_m],
-            rotation_deg: libm::atan2(along[1], along[0]).to_degrees(),
-            movable: None,
-            name: door.name.clone(),
-        }
-    }
-}
-
 impl ScenarioFile {
     /// The panels of doors that are closed or have a name, and whether each is closed at the start.
     pub fn panels(&self) -> impl Iterator<Item = (DebrisFile, bool)> + '_ {
-        let doors = self.walls.iter().flat_map(|wall| wall.doors.iter().map(move |door| (wall, door)));
-        let moves = |(_, door): &(&WallFile, &Door)| door.is_closed || door.name.is_some();
-        doors.filter(moves).map(|(wall, door)| (wall.panel(door), door.is_closed))
+        self.walls.iter().flat_map(|wall| {
+            let moving = wall.doors.iter().filter(|door| door.is_closed || door.name.is_some());
+            moving.map(|door| (wall.panel(door), door.is_closed))
+        })
     }
 
     /// The moments in the order of their times. Moments of equal times keep the order of the file.
-    #[must_use]
     pub fn moments(&self) -> Vec<(usize, &Moment)> {
         let mut moments: Vec<(usize, &Moment)> = self.timeline.iter().enumerate().collect();
         moments.sort_by(|a, b| a.1.at_s.total_cmp(&b.1.at_s));
@@ -159,7 +141,6 @@ impl ScenarioFile {
     }
 
     /// Whether a task begins with an event of the timeline.
-    #[must_use]
     pub(crate) fn begins_later(&self, task: &TaskFile) -> bool {
         let first = self.moments().into_iter().find_map(|(_, moment)| match &moment.event {
             Happening::TaskBegins(name) if *name == task.name => Some(true),

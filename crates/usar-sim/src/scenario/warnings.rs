@@ -15,7 +15,6 @@ const FACTOR: f64 = 1000.0;
 impl Scenario {
     /// Values that are a thousand times larger or smaller than the defaults, perhaps by a wrong unit; a team
     /// smaller than the number of tasks; and rows that change nothing. The lines are those in `text`.
-    #[must_use]
     pub fn warnings(&self, text: &str) -> Vec<Problem> {
         let tree = Node::parse(text).ok();
         let mut warnings = Vec::new();

@@ -34,7 +34,6 @@ impl Words {
     }
 
     /// A metric's name in these words: `energy_per_rescuee` is `energy_per_item`.
-    #[must_use]
     pub fn metric(&self, standard: &str) -> String {
         let word = |part: &str| match part {
             "rescuee" => self.rescuee.clone(),
@@ -47,7 +46,6 @@ impl Words {
     }
 
     /// A text in these words, for people: `HP per rescuee` is `condition per item`.
-    #[must_use]
     pub fn text(&self, standard: &str) -> String {
         let word = |part: &str| match part {
             "HP" if self.hp == "hp" => "HP".to_owned(),

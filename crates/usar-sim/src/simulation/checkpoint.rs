@@ -20,7 +20,6 @@ impl Simulation {
     ///
     /// # Panics
     /// Never: the state is of types that postcard can write to memory.
-    #[must_use]
     pub fn checkpoint(&self) -> Checkpoint {
         let state = postcard::to_stdvec(&self.state).expect("the state can be written to memory");
         Checkpoint { setup: Arc::clone(&self.setup), state }
@@ -33,14 +32,12 @@ impl Checkpoint {
     ///
     /// # Panics
     /// Never: the bytes are those that [`Simulation::checkpoint`] wrote.
-    #[must_use]
     pub fn resume(&self) -> Simulation {
         let state: State = postcard::from_bytes(&self.state).expect("the state was written by this program");
         Simulation::from_state(Arc::clone(&self.setup), state)
     }
 
     /// Bytes of the state.
-    #[must_use]
     pub fn size(&self) -> usize {
         self.state.len()
     }

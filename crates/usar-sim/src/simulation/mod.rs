@@ -139,13 +139,11 @@ impl Simulation {
     }
 
     /// The question that waits for an answer.
-    #[must_use]
     pub fn question(&self) -> Option<&Question> {
         self.question.as_ref()
     }
 
     /// How deep bodies have overlapped so far, in a checked trial.
-    #[must_use]
     pub fn overlaps(&self) -> Option<Overlaps> {
         self.invariants.as_ref().map(Invariants::overlaps)
     }
@@ -201,7 +199,6 @@ impl Simulation {
     }
 
     /// The members of the question that waits as they really are; none if the question has them so.
-    #[must_use]
     pub fn truth(&self) -> Option<Vec<Member>> {
         let (asked, robots) = (&self.question.as_ref()?.members, &self.state.world.robots);
         let needs = &self.model().needs;
@@ -262,7 +259,6 @@ impl Simulation {
     }
 
     /// How the trial ended, once it is over.
-    #[must_use]
     pub fn ending(&self) -> Option<Status> {
         if let Some(reason) = &self.failure {
             return Some(Status::Failed(reason.clone()));
@@ -279,7 +275,6 @@ impl Simulation {
     }
 
     /// The record of the trial as far as it was run.
-    #[must_use]
     pub fn finish(mut self) -> TrialRecord {
         let status = self.ending();
         let status = status.unwrap_or_else(|| Status::Failed("it was not run to its end".to_owned()));

@@ -18,7 +18,6 @@ use crate::world::World;
 
 impl Simulation {
     /// The question of a decision of this trial as it was asked, with its history and its evidence.
-    #[must_use]
     pub fn question_of(&self, made: &DecisionRecord) -> Question {
         let State { beliefs, telemetry, .. } = self.state();
         let heard = telemetry.as_ref().map(|telemetry| HeardRecord::of(telemetry, self.model()));
@@ -26,49 +25,41 @@ impl Simulation {
     }
 
     /// The fixed part of this trial.
-    #[must_use]
     pub fn model(&self) -> &Model {
         &self.setup.model
     }
 
     /// The scenario, with the values drawn from its distributions for this trial.
-    #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.setup.scenario
     }
 
     /// The scenario as it was given, with its distributions.
-    #[must_use]
     pub fn given(&self) -> &Scenario {
         self.setup.given()
     }
 
     /// What was drawn from the seed.
-    #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.setup.layout
     }
 
     /// Seed of the trial.
-    #[must_use]
     pub fn seed(&self) -> u64 {
         self.model().seed
     }
 
     /// Steps done.
-    #[must_use]
     pub fn steps(&self) -> u64 {
         self.state.step
     }
 
     /// Simulated time, in seconds.
-    #[must_use]
     pub fn time_s(&self) -> f64 {
         self.state.step as f64 * self.model().dt_s()
     }
 
     /// The world as it is now.
-    #[must_use]
     pub fn world(&self) -> &World {
         &self.state.world
     }
@@ -80,13 +71,11 @@ impl Simulation {
     }
 
     /// The mission as it is now.
-    #[must_use]
     pub fn mission(&self) -> &Mission {
         &self.state.mission
     }
 
     /// The beliefs of the groups and of the team at home as they are now.
-    #[must_use]
     pub fn beliefs(&self) -> &Beliefs {
         &self.state.beliefs
     }
@@ -101,19 +90,16 @@ impl Simulation {
     }
 
     /// The journeys of the robots as they are now.
-    #[must_use]
     pub fn navigator(&self) -> &Navigator {
         &self.state.navigator
     }
 
     /// The metrics so far.
-    #[must_use]
     pub fn metrics(&self) -> &Metrics {
         &self.state.listeners.metrics
     }
 
     /// The groupings so far.
-    #[must_use]
     pub fn decisions(&self) -> &[DecisionRecord] {
         &self.state.listeners.decisions
     }
@@ -124,7 +110,6 @@ impl Simulation {
     }
 
     /// The delay of a robot.
-    #[must_use]
     pub fn delay(&self, robot: RobotId) -> Delay {
         self.state.listeners.metrics.robots[robot.index()].delay()
     }
@@ -136,7 +121,6 @@ impl Simulation {
     }
 
     /// The events of the last step.
-    #[must_use]
     pub fn events(&self) -> &[Event] {
         self.state.log.events()
     }

@@ -102,7 +102,6 @@ impl Ends {
 
 impl Link {
     /// Mean delay of the messages that were heard, in seconds.
-    #[must_use]
     pub fn mean_delay_s(&self) -> Option<f64> {
         (self.heard > 0).then(|| self.delay_s / self.heard as f64)
     }

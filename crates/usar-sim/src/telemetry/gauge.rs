@@ -20,7 +20,6 @@ pub struct Reading {
 
 /// What a gauge shows of a level, in percent; `None` if the reading fails. Every reading has draws of its own,
 /// whether they are used or not.
-#[must_use]
 pub fn read(gauge: &Gauge, level: f64, reading: Reading) -> Option<f64> {
     let Reading { seed, of, step, time_s } = reading;
     let mut draws = stream_at(seed, Purpose::Gauge, of, step);

@@ -7,7 +7,6 @@ use crate::robot::Robot;
 use crate::scenario::RestFills;
 
 /// What was heard, with what the base knows besides.
-#[must_use]
 pub(crate) fn known(model: &Model, heard: Evidence) -> Evidence {
     Evidence {
         hp_threshold: model.mission.low_hp.threshold,
@@ -30,7 +29,6 @@ fn body(robot: &std::sync::Arc<RobotModel>, model: &Model) -> Body {
 }
 
 /// The levels of members as they really are, which have both.
-#[must_use]
 pub(crate) fn true_levels(team: &[Member]) -> Vec<TrueLevels> {
     let of = |member: &Member| {
         let (energy_level, hp_level) = member.energy_level.zip(member.hp_level)?;

@@ -48,13 +48,11 @@ impl Told {
 
 impl LieModel {
     /// Whether the lie is told at a time.
-    #[must_use]
     pub fn is_told_at(&self, time_s: f64) -> bool {
         self.window_s[0] <= time_s && time_s < self.window_s[1]
     }
 
     /// What is said of a level, in percent, at a time within the window. `most` is the most that can be said.
-    #[must_use]
     pub fn said(&self, level: f64, topic: &Topic, most: f64) -> f64 {
         match turned(&self.lie, level, topic, self.window_s[0]) {
             Some(said) => said.max(self.floor).clamp(0.0, most),
@@ -94,7 +92,6 @@ fn turned(lie: &Lie, x: f64, topic: &Topic, since_s: f64) -> Option<f64> {
 }
 
 /// What a liar says of a mate; `None` if it keeps silent. `top_mps` is the mate's top speed at full health.
-#[must_use]
 pub fn said_of_mate(lie: &Lie, rating: Rating, top_mps: f64, rules: &TelemetryModel) -> Option<Rating> {
     let still = Rating { speed_mps: 0.0, ..rating };
     let praised = Rating { speed_mps: rating.said_mps, ..rating };

@@ -107,7 +107,6 @@ impl Now<'_> {
 
 impl Telemetry {
     /// The state before the first report; `None` where the model has no telemetry.
-    #[must_use]
     pub(crate) fn of(model: &Model) -> Option<Box<Self>> {
         let (rules, robots) = (model.telemetry.as_ref()?, model.robots.len());
         let told = |lies: &Vec<usize>| lies.iter().map(|lie| Told::new(*lie)).collect();
@@ -126,7 +125,6 @@ impl Telemetry {
     }
 
     /// What the base heard.
-    #[must_use]
     pub fn heard(&self) -> &Heard {
         &self.heard
     }
@@ -182,21 +180,18 @@ impl Telemetry {
     }
 
     /// The evidence of the last question. `truth` has the levels of its members as they really are.
-    #[must_use]
     pub(crate) fn evidence(&self, model: &Model, truth: Vec<TrueLevels>) -> Option<Evidence> {
         let extent = self.heard.extents.last()?;
         Some(Evidence { truth, ..known(model, self.heard.evidence.as_of(extent)) })
     }
 
     /// The levels of a robot as they were heard last, in percent.
-    #[must_use]
     pub(crate) fn levels(&self, rules: &TelemetryModel, robot: RobotId) -> [f64; 2] {
         self.heard.levels(robot, rules.mean_levels())
     }
 
     /// A robot as a member of a team that is to be grouped, as it was heard last. What the base hands out and
     /// what a robot carries, the base knows.
-    #[must_use]
     pub(crate) fn member(&self, robot: &Robot, model: &Model) -> Option<Member> {
         let rules = model.telemetry.as_ref()?;
         let heard = robot.with_levels(self.levels(rules, robot.id));
@@ -241,7 +236,6 @@ impl Telemetry {
     }
 
     /// The rounds as the base heard of them, as far as their robots still have their names.
-    #[must_use]
     pub(crate) fn history(&self) -> Vec<RoundOutcome> {
         named(&self.heard.history, &self.heard.known_since)
     }

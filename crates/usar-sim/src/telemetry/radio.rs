@@ -102,13 +102,11 @@ impl Telemetry {
 
 impl Model {
     /// How many numbers robots have for rescuees: those that exist, then those that liars make up.
-    #[must_use]
     pub(crate) fn rescuee_numbers(&self) -> usize {
         self.task_ids().last().map_or(0, |task| self.phantoms_of(task).end)
     }
 
     /// The numbers of the rescuees that liars make up for a task, one for each robot.
-    #[must_use]
     pub(crate) fn phantoms_of(&self, task: TaskId) -> Range<usize> {
         let has_phantoms = self.telemetry.as_ref().is_some_and(|rules| rules.has_phantoms);
         let robots = if has_phantoms { self.robots.len() } else { 0 };

@@ -52,25 +52,21 @@ impl Debris {
     }
 
     /// The outline of the piece where it is.
-    #[must_use]
     pub fn outline(&self) -> Outline {
         Outline { shape: self.model.shape.clone(), pose: self.pose }
     }
 
     /// Distance from a point to the piece, in metres; negative inside.
-    #[must_use]
     pub(crate) fn signed_distance(&self, point: Vector) -> f32 {
         self.model.shape.distance_to_point(&self.pose, point, false)
     }
 
     /// Distance from a point to the piece, in metres; 0 inside.
-    #[must_use]
     pub fn distance_to(&self, point: Vector) -> f32 {
         self.model.shape.distance_to_point(&self.pose, point, true)
     }
 
     /// Whether the piece is in the arena.
-    #[must_use]
     pub fn is_there(&self) -> bool {
         self.pose.translation != AWAY
     }
@@ -85,7 +81,6 @@ impl Debris {
     }
 
     /// The bounding box of the piece.
-    #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.model.shape.compute_aabb(&self.pose)
     }
@@ -96,7 +91,6 @@ impl Debris {
     }
 
     /// How many of the sightings could be made up to a step, that step included.
-    #[must_use]
     pub fn sightings_until(&self, step: u64) -> usize {
         self.since.partition_point(|since| *since <= step)
     }

@@ -53,7 +53,6 @@ pub struct World {
 
 impl World {
     /// A world with everything at its initial place.
-    #[must_use]
     pub fn build(model: &Model) -> Self {
         let robots: Vec<Robot> = model.robots.iter().map(Robot::new).collect();
         let debris: Vec<Debris> = model.debris.iter().map(Debris::new).collect();
@@ -111,7 +110,6 @@ impl World {
     }
 
     /// Whether a radiation zone is on.
-    #[must_use]
     pub fn is_on(&self, zone: usize) -> bool {
         self.switches_of(zone) % 2 == 1
     }
@@ -126,13 +124,11 @@ impl World {
     }
 
     /// How often a radiation zone was switched on or off; 1 if it was always on.
-    #[must_use]
     pub(crate) fn switches_of(&self, zone: usize) -> u8 {
         self.zone_switches.get(zone).copied().unwrap_or(1)
     }
 
     /// The step since which a radiation zone is as it is; none if it never was on.
-    #[must_use]
     pub(crate) fn zone_since(&self, zone: usize) -> Option<u64> {
         (self.switches_of(zone) > 0).then(|| self.zone_since.get(zone).copied().unwrap_or(0))
     }

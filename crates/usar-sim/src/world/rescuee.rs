@@ -55,7 +55,6 @@ impl Rescuees {
     }
 
     /// Number of mutable accesses to the list.
-    #[must_use]
     pub fn changes(&self) -> u64 {
         self.changes
     }

@@ -16,6 +16,6 @@ pub(crate) use common::{
 pub(crate) use family::{ComparisonArguments, FamilyArguments};
 pub(crate) use parameters::ParameterArguments;
 pub(crate) use picture::{LookArguments, PictureArguments, PictureFile, width};
-pub(crate) use progress::{ProgressArguments, default_jobs, progress_bar};
+pub(crate) use progress::{ProgressArguments, default_jobs, opened, progress_bar};
 pub(crate) use selection::Selection;
 pub(crate) use trial::{Trial, TrialArguments};

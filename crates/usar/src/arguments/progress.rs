@@ -1,11 +1,12 @@
 //! Threads of commands that run for a while, and their progress on stderr.
 
 use std::fmt::Display;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use experiments::experiment::Shard;
+use experiments::experiment::{Experiment, Shard};
 use experiments::run::Limits;
-use experiments::sweep::folder::Folder;
+use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::host::{HostRun, Hosts};
 use experiments::sweep::{missing, run_trials};
 use indicatif::{HumanDuration, ProgressBar, ProgressStyle};
@@ -69,6 +70,14 @@ impl ProgressArguments {
         Ok(done)
     }
 
+    /// Opens the folder of an experiment, runs the trials that it lacks and finishes it.
+    pub(crate) fn finished(&self, place: &Path, experiment: Experiment) -> Result<Folder, Failure> {
+        let mut folder = opened(place, experiment, Opening::default())?;
+        self.run_missing(&mut folder, None, None)?;
+        folder.finish(&STOP)?;
+        Ok(folder)
+    }
+
     /// Runs the trials that a folder lacks.
     pub(crate) fn run_missing(
         &self,
@@ -98,6 +107,11 @@ impl ProgressArguments {
         }
         ran
     }
+}
+
+/// Opens the folder of an experiment; what there is to note is told on stderr.
+pub(crate) fn opened(place: &Path, experiment: Experiment, opening: Opening) -> Result<Folder, Failure> {
+    Folder::open(place, Arc::new(experiment), opening, &mut |note| tell(format_args!("note: {note}")))
 }
 
 /// One thread per core.

@@ -14,7 +14,7 @@ use experiments::sweep::host::Hosts;
 use reports::table::policy_table;
 
 use self::precision::Precision;
-use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count};
+use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count, opened};
 use crate::input::{check_trials, tell_doubts, tell_warnings_of_all};
 use crate::library;
 use crate::parquets::write_parquets;
@@ -126,9 +126,7 @@ impl Arguments {
 
         stop_on_signals();
         let opening = Opening { shard: self.shard, is_fresh: self.fresh };
-        let mut folder = Folder::open(&path, Arc::new(experiment), opening, &mut |note| {
-            tell(format_args!("note: {note}"));
-        })?;
+        let mut folder = opened(&path, experiment, opening)?;
         self.run(&mut folder)?;
         let most = self.most(folder.experiment());
         while let Some(trials) = precision.as_ref().and_then(|rule| rule.next_look(&folder, most)) {

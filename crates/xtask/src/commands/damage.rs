@@ -7,11 +7,10 @@ use std::process::{Command, ExitCode};
 
 use xtask::damage::{Report, Sound};
 
+use super::number;
+
 pub fn run(arguments: &[String]) -> ExitCode {
-    let number = |at: usize, usual: u32| {
-        arguments.get(at).map_or(usual, |text| text.parse().expect("a number of folders to damage"))
-    };
-    let (flips, forgeries) = (number(0, 1000), number(1, 100));
+    let (flips, forgeries) = (number(arguments, 0, 1000) as u32, number(arguments, 1, 100) as u32);
     let folder = tempfile::tempdir().expect("a temporary folder");
     let results = folder.path().join("results");
     let mut sweep = Command::new(super::usar());

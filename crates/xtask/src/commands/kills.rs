@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use xtask::kills;
 
 pub fn run(arguments: &[String]) -> ExitCode {
-    let kills = arguments.first().map_or(100, |text| text.parse().expect("a number"));
+    let kills = super::number(arguments, 0, 100) as u32;
     let usar = super::usar();
     let scenario = std::env::current_dir().expect("a folder").join("scenarios/paper.ron");
     let scenario = scenario.to_str().expect("a path of text");

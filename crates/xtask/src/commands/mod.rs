@@ -1,13 +1,10 @@
 //! One file per task.
 
-pub mod calibration;
 pub mod coverage;
 pub mod damage;
 pub mod golden;
-pub mod grid;
 pub mod kills;
 pub mod limits;
-pub mod million;
 pub mod mutations;
 pub mod pages;
 pub mod quiet;
@@ -29,6 +26,11 @@ fn silence_triangulations() {
             others(panic);
         }
     }));
+}
+
+/// The whole number at this place of the arguments.
+fn number(arguments: &[String], at: usize, usual: u64) -> u64 {
+    arguments.get(at).map_or(usual, |text| text.parse().expect("a whole number"))
 }
 
 /// The program `usar` that was built into the same folder as this one.

@@ -11,7 +11,7 @@ use xtask::mutations;
 const LONGEST: Duration = Duration::from_secs(1);
 
 pub fn run(arguments: &[String]) -> ExitCode {
-    let count = arguments.first().map_or(100_000, |count| count.parse().expect("a whole number"));
+    let count = super::number(arguments, 0, 100_000);
     let folder = tempfile::tempdir().expect("a folder");
     let outcome = mutations::run(count, 0, folder.path());
     let mutations::Outcome { loaded, refused, panics, longest } = &outcome;

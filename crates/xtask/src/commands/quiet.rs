@@ -7,9 +7,11 @@
 use std::process::ExitCode;
 
 use rayon::prelude::*;
-use usar_sim::scenario::{Scenario, ScenarioFile};
+use usar_sim::scenario::Scenario;
 use xtask::quiet::{BothWays, both_ways};
 use xtask::{random, rooms, worlds};
+
+use super::{number, worlds::lasting};
 
 /// A kind of worlds: its name, and the world of a seed.
 type Kind = (&'static str, fn(u64) -> Scenario);
@@ -17,16 +19,11 @@ type Kind = (&'static str, fn(u64) -> Scenario);
 const KINDS: [Kind; 3] = [("open", worlds::world), ("rooms", rooms::rooms), ("all kinds", random::scenario)];
 
 pub fn run(arguments: &[String]) -> ExitCode {
-    let number =
-        |at: usize, default: u64| arguments.get(at).map_or(default, |text| text.parse().expect("a number"));
-    let (first, count, seconds) = (number(0, 0), number(1, 170), number(2, 200) as f64);
+    let (first, count, seconds) =
+        (number(arguments, 0, 0), number(arguments, 1, 170), number(arguments, 2, 200) as f64);
     let mut differ = 0;
     for (kind, world) in KINDS {
-        let run = |seed: u64| {
-            let file = ScenarioFile { duration_s: seconds, ..(*world(seed)).clone() };
-            let scenario = Scenario::try_from(file).expect("only its duration is another");
-            Some((seed, both_ways(&scenario, seed)?))
-        };
+        let run = |seed: u64| Some((seed, both_ways(&lasting(&world(seed), seconds), seed)?));
         let results: Vec<(u64, BothWays)> = (first..first + count).into_par_iter().filter_map(run).collect();
         let (mut all, mut on) = (0, 0);
         for (seed, BothWays { differs_at, steps }) in &results {

@@ -13,11 +13,11 @@ use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
 use xtask::density;
 
+use super::number;
+
 pub fn run(arguments: &[String]) -> ExitCode {
-    let number =
-        |at: usize, usual: u32| arguments.get(at).map_or(usual, |text| text.parse().expect("a whole number"));
-    let (robots, seconds) = (number(0, 10_000), number(1, 60));
-    let mut scenario = density::mission(robots, f64::from(seconds), None);
+    let (robots, seconds) = (number(arguments, 0, 10_000) as u32, number(arguments, 1, 60) as f64);
+    let mut scenario = density::mission(robots, seconds, None);
     if let Some(resolver) = arguments.get(2) {
         let mut file = (*scenario).clone();
         file.set("conflicts.resolver", resolver).expect("a resolver");

@@ -9,10 +9,10 @@ use std::time::Instant;
 use rayon::prelude::*;
 use xtask::random;
 
+use super::number;
+
 pub fn run(arguments: &[String]) -> ExitCode {
-    let number =
-        |at: usize, default: u64| arguments.get(at).map_or(default, |text| text.parse().expect("a number"));
-    let (first, count) = (number(0, 0), number(1, 500));
+    let (first, count) = (number(arguments, 0, 0), number(arguments, 1, 500));
     std::panic::set_hook(Box::new(|_| {})); // a panic is counted, and told in one line
     let began = Instant::now();
     let run = |seed: u64| (seed, catch_unwind(AssertUnwindSafe(|| random::run(seed))).ok());

@@ -59,7 +59,7 @@ fn run_family(family: &Family, seeds: std::ops::Range<u64>, duration_s: f64) -> 
 }
 
 /// A world with another duration.
-fn lasting(scenario: &Scenario, duration_s: f64) -> Scenario {
+pub(super) fn lasting(scenario: &Scenario, duration_s: f64) -> Scenario {
     let file = ScenarioFile { duration_s, ..(**scenario).clone() };
     Scenario::try_from(file).unwrap_or_else(|problems| panic!("{problems:?}"))
 }

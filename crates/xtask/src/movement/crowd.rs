@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use usar_sim::event::Event;
 use usar_sim::robot::{Robot, STANDING_MPS};
 use usar_sim::scenario::{
-    DebrisFile, DebrisShape, Errand, LayoutError, Normal, Point, RoleFile, Row, Scenario, ScenarioFile,
+    DebrisFile, DebrisShape, Errand, LayoutError, Normal, RoleFile, Row, Scenario, ScenarioFile,
 };
 use usar_sim::simulation::{Advance, Simulation};
 
@@ -91,13 +91,11 @@ pub struct Passage {
 
 impl Crowd {
     /// A crowd before a door of this width and depth.
-    #[must_use]
     pub fn at_door(robots: u32, width_m: f64, length_m: f64) -> Self {
         Self { robots, way: vec![Stretch { length_m, width_m }] }
     }
 
     /// A crowd before a corridor of 8 m by 1.8 m, as in the Hermes experiments, with a door at either end.
-    #[must_use]
     pub fn at_corridor(robots: u32, entrance_m: f64, exit_m: f64) -> Self {
         let door = |width_m| Stretch { length_m: DOOR_M, width_m };
         let corridor = Stretch { length_m: 8.0, width_m: 1.8 };
@@ -118,7 +116,6 @@ impl Crowd {
     }
 
     /// The crowd as a scenario of errands; the seed draws the starts.
-    #[must_use]
     pub fn file(&self, seed: u64, duration_s: f64) -> ScenarioFile {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
         let ([abreast, _], [begin, end]) = (self.ranks(), self.ends());
@@ -137,7 +134,7 @@ impl Crowd {
             // Those in front go farthest, so that nobody has to pass those who have arrived.
             let column = f64::from(columns - 1 - robot / in_hall);
             let x = end + TO_PLACES_M + PLACES_M * column;
-            file.team.push(row(center));
+            file.team.push(Row::of_one("robot", center));
             file.errands.push(Errand { robot, to: vec![[x, beside(robot % in_hall, in_hall, PLACES_M)]] });
         }
         file.debris = self.walls(begin);
@@ -153,13 +150,8 @@ impl Crowd {
         for stretch in &self.way {
             let height = (HEIGHT_M - stretch.width_m) / 2.0;
             for y in [height / 2.0, HEIGHT_M - height / 2.0] {
-                walls.push(DebrisFile {
-                    shape: DebrisShape::Box(stretch.length_m, height),
-                    at: [x + stretch.length_m / 2.0, y],
-                    rotation_deg: 0.0,
-                    movable: None,
-                    name: None,
-                });
+                let shape = DebrisShape::Box(stretch.length_m, height);
+                walls.push(DebrisFile::fixed(shape, [x + stretch.length_m / 2.0, y]));
             }
             x += stretch.length_m;
         }
@@ -221,7 +213,6 @@ impl Crowd {
 }
 
 /// Flow between the first tenth and the last tenth of those who cross a line at these times, in order.
-#[must_use]
 pub fn steady_flow(times: &[f64]) -> Option<f64> {
     let last = times.len().checked_sub(1)?;
     let unsteady = (UNSTEADY * times.len() as f64).round() as usize;
@@ -247,9 +238,4 @@ pub(super) fn role(speed_mps: f64) -> RoleFile {
         sensing_m: SENSING_M,
         ..RoleFile::default()
     }
-}
-
-/// One robot at a place.
-pub(super) fn row(center: Point) -> Row {
-    Row { role: "robot".to_owned(), count: 1, center, width_m: 0.0, levels: None, body: None }
 }

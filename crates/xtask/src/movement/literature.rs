@@ -77,14 +77,12 @@ pub struct Peer {
 
 impl Power {
     /// The power as `costs.energy.per_second`: percent of the battery a second.
-    #[must_use]
     pub fn per_second(&self) -> f64 {
         self.percent(self.watts)
     }
 
     /// What driving adds to the power at a stand, as `costs.energy.per_metre`: percent of the battery a
     /// metre. `None` for a robot that stands.
-    #[must_use]
     pub fn per_metre(&self, standing: &Self) -> Option<f64> {
         (self.speed_mps > 0.0).then(|| self.percent((self.watts - standing.watts) / self.speed_mps))
     }
@@ -125,7 +123,6 @@ fn rows<T: for<'de> Deserialize<'de>>(text: &[u8]) -> Result<Vec<T>, csv::Error>
 
 /// Weidmann's relation (1993): the mean speed of people, in metres per second, at a density in people a
 /// square metre.
-#[must_use]
 pub fn weidmann(per_m2: f64) -> f64 {
     if per_m2 <= 0.0 {
         return FREE_SPEED_MPS;

@@ -83,7 +83,6 @@ struct Measured {
 }
 
 /// Runs the command with the arguments of the program.
-#[must_use]
 pub fn main() -> ExitCode {
     match Options::parse_from(std::env::args().skip(1)).run() {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,10 +5,10 @@
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 use usar_sim::event::Event;
-use usar_sim::scenario::{Body, Errand, LayoutError, Point, Scenario};
+use usar_sim::scenario::{Body, Errand, LayoutError, Point, Row, Scenario};
 use usar_sim::simulation::{Advance, Simulation};
 
-use super::crowd::{RELAXATION_S, keep_fresh, role, row};
+use super::crowd::{RELAXATION_S, keep_fresh, role};
 use crate::worlds::base;
 
 /// Ranges of speeds, in metres per second, and of radii, in metres.
@@ -55,7 +55,6 @@ pub struct Outcome {
 
 impl Agent {
     /// Time on the straight line at the preferred speed, in seconds.
-    #[must_use]
     pub fn straight_s(&self) -> f64 {
         distance(self.start, self.goal) / self.speed_mps
     }
@@ -93,7 +92,6 @@ fn to_origin(a: Point, b: Point) -> f64 {
 }
 
 /// The case of a seed: no agent can go straight past all those drawn before it.
-#[must_use]
 pub fn case(agents: u32, seed: u64) -> Vec<Agent> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut half = 0.5 + f64::from(agents) / 2.0;
@@ -138,9 +136,7 @@ fn scenario(agents: &[Agent], seed: u64, duration_s: f64) -> Scenario {
             acceleration_mps2: Some(agent.speed_mps / RELAXATION_S),
             ..Body::default()
         };
-        let mut row = row(shifted(agent.start));
-        row.body = Some(body);
-        file.team.push(row);
+        file.team.push(Row { body: Some(body), ..Row::of_one("robot", shifted(agent.start)) });
         file.errands.push(Errand { robot: id, to: vec![shifted(agent.goal)] });
     }
     keep_fresh(&mut file);

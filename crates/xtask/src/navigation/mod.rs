@@ -41,15 +41,6 @@ struct Options {
     /// Sets a field of every scenario, as in `conflicts.priority=LowestHpFirst`
     #[arg(long, value_name = "FIELD=VALUE")]
     set: Vec<String>,
-    /// Writes a line for every trial
-    #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
-    /// Threads [default: one for each core]
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
-    threads: usize,
-    /// Lists the robots that did not arrive, where they ended and why
-    #[arg(long)]
-    verbose: bool,
     /// Writes `scenarios/navigation/` instead: seed 1 of each problem
     #[arg(long)]
     write: bool,
@@ -71,11 +62,9 @@ touches: times that a robot came to touch another, for each robot.
 
 Examples:
   navigation --problem circle_16 doorway* --seeds 5
-  navigation --problem parked_across --seed 3 --verbose
-  navigation --resolver None --csv none.csv";
+  navigation --resolver None";
 
 /// Runs the command with the arguments of the program.
-#[must_use]
 pub fn main() -> ExitCode {
     let options = Options::parse_from(std::env::args().skip(1));
     match options.run() {
@@ -88,7 +77,6 @@ pub fn main() -> ExitCode {
 }
 
 /// The folder of the instances of seed 1.
-#[must_use]
 pub fn folder() -> PathBuf {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
     manifest.ancestors().nth(2).unwrap_or(manifest).join("scenarios/navigation")
@@ -115,18 +103,11 @@ impl Options {
             changes.push((field.to_owned(), value.to_owned()));
         }
         changes.extend(self.resolver.iter().map(|name| ("conflicts.resolver".to_owned(), name.clone())));
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build();
-        let pool = pool.map_err(Failure::run)?;
-        let mut table = Table::new(self.csv.as_deref())?;
+        let mut table = Table::new()?;
         for problem in problems {
             let run = |seed| trial::run(problem, seed, &changes);
-            let outcomes: Result<Vec<Outcome>, TrialError> =
-                pool.install(|| seeds.clone().into_par_iter().map(run).collect());
-            let outcomes = outcomes.map_err(Failure::run)?;
-            table.add(problem, &outcomes)?;
-            if self.verbose {
-                outcomes.iter().for_each(table::explain);
-            }
+            let outcomes: Result<Vec<Outcome>, TrialError> = seeds.clone().into_par_iter().map(run).collect();
+            table.add(problem, &outcomes.map_err(Failure::run)?);
         }
         table.finish();
         Ok(())

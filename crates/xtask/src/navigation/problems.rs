@@ -83,7 +83,6 @@ impl Problem {
     }
 
     /// The scenario of a seed, as text.
-    #[must_use]
     pub fn text(&self, seed: u64) -> String {
         let world = self.world(seed);
         let Self { name, what, source, .. } = self;

@@ -1,18 +1,16 @@
-//! The results of trials, as printed tables and as CSV.
+//! The results of trials as a printed table.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::time::Instant;
 
 use experiments::Failure;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::problems::Problem;
-use super::trial::{Late, Outcome};
+use super::trial::Outcome;
 
 /// A table that prints the line of each problem as soon as its trials have ended.
 pub(super) struct Table {
-    csv: Option<csv::Writer<std::fs::File>>,
     /// The least flow of another method that was ok in all trials, by problem.
     peers: BTreeMap<String, f64>,
     start: Instant,
@@ -22,42 +20,19 @@ pub(super) struct Table {
     given_up: u32,
 }
 
-/// A line of the CSV file.
-#[derive(Serialize)]
-struct Line<'o> {
-    problem: &'static str,
-    seed: u64,
-    robots: usize,
-    arrived: usize,
-    flow: f64,
-    ok: bool,
-    given_up: u32,
-    touches: f64,
-    deepest_mm: f32,
-    step_us: f64,
-    time_s: f64,
-    limit_s: f64,
-    failure: &'o str,
-}
-
 impl Table {
-    /// Prints the header, and opens the CSV file if there is one.
-    pub(super) fn new(csv: Option<&Path>) -> Result<Self, Failure> {
-        let open = |path: &Path| {
-            csv::Writer::from_path(path)
-                .map_err(|error| Failure::storage(format!("{}: {error}", path.display())))
-        };
-        let csv = csv.map(open).transpose()?;
+    /// Prints the header.
+    pub(super) fn new() -> Result<Self, Failure> {
         println!(
             "{:16} {:>6} {:>7} {:>7} {:>7} {:>6} {:>8} {:>8} {:>8}",
             "problem", "robots", "flow", "worst", "peer", "ok %", "given up", "touches", "us/step"
         );
         let peers = best_peers().map_err(|error| Failure::input(format!("peers.csv: {error}")))?;
-        Ok(Self { csv, peers, start: Instant::now(), flows: Vec::new(), trials: 0, ok: 0, given_up: 0 })
+        Ok(Self { peers, start: Instant::now(), flows: Vec::new(), trials: 0, ok: 0, given_up: 0 })
     }
 
-    /// Prints the line of a problem, and writes its trials.
-    pub(super) fn add(&mut self, problem: &Problem, outcomes: &[Outcome]) -> Result<(), Failure> {
+    /// Prints the line of a problem.
+    pub(super) fn add(&mut self, problem: &Problem, outcomes: &[Outcome]) {
         let mean = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>() / outcomes.len() as f64;
         let flow = mean(|outcome| outcome.flow);
         let ok = outcomes.iter().filter(|outcome| outcome.is_ok()).count();
@@ -76,11 +51,6 @@ impl Table {
         self.trials += outcomes.len();
         self.ok += ok;
         self.given_up += given_up;
-        let Some(csv) = &mut self.csv else { return Ok(()) };
-        for outcome in outcomes {
-            csv.serialize(line(problem, outcome)).map_err(Failure::storage)?;
-        }
-        csv.flush().map_err(Failure::storage)
     }
 
     /// Prints the summary line.
@@ -120,52 +90,4 @@ fn best_peers() -> Result<BTreeMap<String, f64>, csv::Error> {
         }
     }
     Ok(best)
-}
-
-fn line<'o>(problem: &Problem, outcome: &'o Outcome) -> Line<'o> {
-    Line {
-        problem: problem.name,
-        seed: outcome.seed,
-        robots: outcome.robots,
-        arrived: outcome.arrived,
-        flow: outcome.flow,
-        ok: outcome.is_ok(),
-        given_up: outcome.given_up,
-        touches: outcome.touches,
-        deepest_mm: 1000.0 * outcome.deepest_m,
-        step_us: outcome.step_us,
-        time_s: outcome.time_s,
-        limit_s: outcome.limit_s,
-        failure: outcome.failure.as_deref().unwrap_or_default(),
-    }
-}
-
-/// Prints why a trial is not ok; prints nothing if it is ok.
-pub(super) fn explain(outcome: &Outcome) {
-    if outcome.is_ok() {
-        return;
-    }
-    let Outcome { seed, arrived, robots, time_s, limit_s, .. } = outcome;
-    println!("  seed {seed}: {arrived} of {robots} arrived; over at {time_s:.1} s of {limit_s:.1} s");
-    if let Some(reason) = &outcome.failure {
-        println!("    broke off: {reason}");
-    }
-    if outcome.overlapped {
-        println!("    bodies overlapped by {:.1} mm", 1000.0 * outcome.deepest_m);
-    }
-    for late in &outcome.late {
-        let Late { robot, at, goal, delay, stalled_s, .. } = late;
-        let waits_for = delay.waits_for.map(|id| format!(" robot {id}")).unwrap_or_default();
-        let left = libm::hypot(goal[0] - f64::from(at[0]), goal[1] - f64::from(at[1]));
-        let gave_up = late.gave_up_s.map(|time| format!(", gave up at {time:.1} s")).unwrap_or_default();
-        println!(
-            "    robot {robot}: at ({:.2}, {:.2}), goal ({:.2}, {:.2}), {left:.2} m away: {}{waits_for}, not \
-             nearer for {stalled_s:.1} s{gave_up}",
-            at[0],
-            at[1],
-            goal[0],
-            goal[1],
-            delay.cause.name()
-        );
-    }
 }

@@ -5,12 +5,10 @@ use std::time::{Duration, Instant};
 
 use ron_tree::Problem as Broken;
 use thiserror::Error;
-use usar_sim::conflict::Delay;
 use usar_sim::event::Event;
-use usar_sim::ids::RobotId;
 use usar_sim::invariant::RARE_OVERLAP_M;
 use usar_sim::record::Status;
-use usar_sim::scenario::{LayoutError, Point, Row, Scenario, ScenarioError, ScenarioFile};
+use usar_sim::scenario::{LayoutError, Row, Scenario, ScenarioError, ScenarioFile};
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::stage::Stage;
 use usar_sim::world::World;
@@ -23,8 +21,6 @@ const TOUCH_M: [f32; 2] = [0.002, 0.02];
 
 /// The outcome of a trial.
 pub struct Outcome {
-    /// The seed.
-    pub seed: u64,
     /// Number of robots with a goal.
     pub robots: usize,
     /// Number of robots that arrived.
@@ -46,34 +42,15 @@ pub struct Outcome {
     pub overlapped: bool,
     /// Wall-clock time of a step for one robot, without checks, in microseconds.
     pub step_us: f64,
-    /// Why the trial was interrupted, if it was.
-    pub failure: Option<String>,
-    /// The robots that did not arrive.
-    pub late: Vec<Late>,
+    /// Whether the trial was interrupted.
+    pub failed: bool,
 }
 
 impl Outcome {
     /// Whether all robots arrived, and no bodies overlapped by more than a centimetre.
-    #[must_use]
     pub fn is_ok(&self) -> bool {
-        self.failure.is_none() && self.late.is_empty() && !self.overlapped
+        !self.failed && self.arrived == self.robots && !self.overlapped
     }
-}
-
-/// A robot that did not arrive.
-pub struct Late {
-    /// Number of the robot.
-    pub robot: u32,
-    /// Its last position.
-    pub at: [f32; 2],
-    /// Its goal.
-    pub goal: Point,
-    /// Time when it gave up the goal, in seconds, if it did.
-    pub gave_up_s: Option<f64>,
-    /// Its delay cause at the end, and the robot for which it waits.
-    pub delay: Delay,
-    /// Time since it last came nearer to its goal, in seconds.
-    pub stalled_s: f64,
 }
 
 /// Why a problem has no trial.
@@ -164,13 +141,12 @@ fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, TrialErro
 /// Runs all robots together, until the last one has arrived or given up.
 fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, TrialError> {
     let limit_s = file.duration_s;
-    let goals: Vec<(u32, Point)> = file.errands.iter().map(|errand| (errand.robot, errand.to[0])).collect();
+    let goals: Vec<u32> = file.errands.iter().map(|errand| errand.robot).collect();
     let mut simulation = simulation(file, seed)?.checked();
     let all = simulation.world().robots.len();
     let (mut arrivals, mut given_up) = (vec![None; all], vec![None; all]);
     let (mut touches, mut clock) = (Touches::new(all), Duration::ZERO);
-    let mut failure = None;
-    loop {
+    let failed = loop {
         let (start, mut end) = (Instant::now(), Duration::ZERO);
         let advance = simulation.advance_watched(|stage| {
             if stage != Stage::Record {
@@ -180,11 +156,7 @@ fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, Trial
         clock += end;
         match advance {
             Advance::Running => {}
-            Advance::Over(Status::Failed(reason)) => {
-                failure = Some(reason);
-                break;
-            }
-            Advance::Over(_) => break,
+            Advance::Over(status) => break matches!(status, Status::Failed(_)),
             Advance::Asks(_) => return Err(TrialError::Asks),
         }
         for event in simulation.events() {
@@ -195,24 +167,10 @@ fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, Trial
             }
         }
         touches.note(simulation.world());
-    }
-    let times = goals.iter().map(|(robot, _)| arrivals[*robot as usize].unwrap_or(limit_s));
-    let delays: Vec<Delay> = simulation.delays().collect();
-    let late = goals.iter().filter(|(robot, _)| arrivals[*robot as usize].is_none());
-    let late = late.map(|(robot, goal)| {
-        let traveller = simulation.navigator().traveller(RobotId(*robot));
-        Late {
-            robot: *robot,
-            at: simulation.world().robots[*robot as usize].position.into(),
-            goal: *goal,
-            gave_up_s: given_up[*robot as usize],
-            delay: delays[*robot as usize],
-            stalled_s: traveller.stalled_steps() as f64 * simulation.scenario().dt_s,
-        }
-    });
+    };
+    let times = goals.iter().map(|robot| arrivals[*robot as usize].unwrap_or(limit_s));
     let overlaps = simulation.overlaps().unwrap_or_default();
     Ok(Outcome {
-        seed,
         robots: goals.len(),
         arrived: arrivals.iter().flatten().count(),
         flow: times.sum::<f64>() / free_s,
@@ -223,8 +181,7 @@ fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, Trial
         deepest_m: overlaps.deepest_m,
         overlapped: overlaps.deepest_m > RARE_OVERLAP_M,
         step_us: clock.as_secs_f64() * 1e6 / (simulation.steps() * all as u64) as f64,
-        failure,
-        late: late.collect(),
+        failed,
     })
 }
 

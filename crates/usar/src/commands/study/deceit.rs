@@ -1,14 +1,14 @@
 //! `usar study deceit`: what lies cost each policy, how many liars it bears, and how well estimators judge.
 
-use std::sync::Arc;
+use std::collections::BTreeMap;
 
 use experiments::comparison::{digits, short};
-use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay, Worth};
+use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::oracle::Objective;
 use experiments::regret::StudyFolder;
-use experiments::sweep::folder::{Folder, Opening};
-use reports::table::{headed, right};
+use experiments::sweep::folder::Folder;
+use reports::table::{between, headed, mean, number, or_dash, right};
 use serde_json::json;
 
 use crate::arguments::{ProgressArguments, ShownArguments};
@@ -74,11 +74,7 @@ impl Arguments {
         }
         let named = Path::new("results").join(&experiment.name);
         let place = self.out.clone().unwrap_or(named);
-        let note = &mut |note: String| tell(format_args!("note: {note}"));
-        let mut folder = Folder::open(&place, Arc::new(experiment), Opening::default(), note)?;
-        self.progress.run_missing(&mut folder, None, None)?;
-        folder.finish(&STOP)?;
-        self.print(&folder, out)
+        self.print(&self.progress.finished(&place, experiment)?, out)
     }
 
     fn print(&self, folder: &Folder, out: &mut dyn Write) -> Result<(), Failure> {
@@ -103,21 +99,15 @@ impl Arguments {
             Replay::of(experiment, &study, &objective, &STOP, || bar.inc(1))
         })??;
         if self.shown.is_json() {
-            let worth = |one: &Worth| {
-                let of = |it: &Difference| json!({"mean": it.mean, "interval": it.interval});
-                let differences: Vec<_> = one.differences.iter().map(of).collect();
-                json!({"policy": one.policy, "lie": one.lie, "differences": differences})
-            };
-            let worths: Vec<_> = found.worths.iter().map(worth).collect();
             return print_json(&json!({"objective": found.objective, "liars": found.counts,
-                "trials": found.trials, "policies": worths}));
+                "trials": found.trials, "policies": found.worths}));
         }
         let words = "minus the mean of all assignments, by number of liars";
         writeln!(out, "{}: {} trials that DIS decided; {words}", objective.title(), found.trials)?;
         let names = ["policy", "lie"].map(str::to_owned).into_iter();
         let mut table = headed(names.chain(found.counts.iter().map(u32::to_string)));
         for one in &found.worths {
-            let cells = one.differences.iter().map(|it| right(&it.mean.map_or("-".to_owned(), short)));
+            let cells = one.differences.iter().map(|it| number(it.mean));
             table.add_row([one.policy.as_str().into(), one.lie.as_str().into()].into_iter().chain(cells));
         }
         print_table(out, &table)
@@ -130,7 +120,7 @@ fn print_borne(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
     let names = ["policy", "lie"].map(str::to_owned).into_iter().chain(counts);
     let mut table = headed(names.chain(["breaks down".to_owned()]));
     for one in &found.borne {
-        let means = one.means.iter().map(|mean| right(&mean.map_or("-".to_owned(), |it| digits(it, 4))));
+        let means = one.means.iter().map(|value| mean(*value));
         let cells = [one.policy.as_str().into(), one.lie.as_str().into()];
         table.add_row(cells.into_iter().chain(means).chain([in_words(one, &found.counts).into()]));
     }
@@ -157,10 +147,9 @@ fn print_prices(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
     for price in &found.prices {
         let has_one = found.prices.iter().filter(|other| other.policy == price.policy).count() == 1;
         let place = if has_one { "everywhere" } else { &price.lie };
-        let Difference { mean, interval } = &price.difference;
-        let interval = interval.map_or("-".to_owned(), |[a, b]| format!("{} to {}", short(a), short(b)));
-        let mean = mean.map_or("-".to_owned(), short);
-        table.add_row([price.policy.as_str().into(), place.into(), right(&mean), right(&interval)]);
+        let Difference { mean, interval } = price.difference;
+        let cells = [price.policy.as_str().into(), place.into(), number(mean), right(&between(interval))];
+        table.add_row(cells);
     }
     print_table(out, &table)
 }
@@ -172,7 +161,7 @@ fn print_judgements(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> 
     writeln!(out, "\nHow well estimators judge the same evidence")?;
     let mut table = headed(["estimator", "lie", "liars"].into_iter().chain(ACCURACY));
     for one in &found.judgements {
-        let values = one.values.iter().map(|value| right(&value.map_or("-".to_owned(), |it| digits(it, 3))));
+        let values = one.values.iter().map(|value| right(&or_dash(*value, |it| digits(it, 3))));
         let cells = [one.guide.as_str().into(), one.lie.as_str().into(), right(&one.liars.to_string())];
         table.add_row(cells.into_iter().chain(values));
     }
@@ -191,11 +180,7 @@ fn as_json(found: &Deceit) -> serde_json::Value {
             "difference": price.difference.mean, "interval": price.difference.interval})
     });
     let judgements = found.judgements.iter().map(|one| {
-        let values: serde_json::Map<String, serde_json::Value> = ACCURACY
-            .iter()
-            .zip(&one.values)
-            .map(|(name, value)| ((*name).to_owned(), json!(value)))
-            .collect();
+        let values: BTreeMap<&str, &Option<f64>> = ACCURACY.into_iter().zip(&one.values).collect();
         json!({"estimator": one.guide, "lie": one.lie, "liars": one.liars, "values": values})
     });
     json!({"metric": found.metric, "margin": found.margin, "draw": found.draw, "liars": found.counts,

@@ -1,11 +1,9 @@
 //! `usar study room`: how much grouping matters in a world.
 
-use std::sync::Arc;
-
-use experiments::comparison::{digits, short};
 use experiments::experiment::{Experiment, Overrides};
-use experiments::sweep::folder::{Folder, Opening};
-use reports::table::{headed, right};
+use experiments::sweep::folder::Folder;
+use reports::table::{between, headed, mean, number, or_dash, right};
+use serde::Serialize;
 use serde_json::json;
 use statistics::{Moments, cautious};
 
@@ -57,6 +55,7 @@ pub(crate) struct Arguments {
 }
 
 /// A policy beside the draw.
+#[derive(Serialize)]
 struct Row {
     policy: String,
     mean: Option<f64>,
@@ -72,33 +71,21 @@ impl Arguments {
         let experiment = self.experiment(registry)?;
         let named = Path::new("results").join(format!("room-{}", experiment.name));
         let place = self.out.clone().unwrap_or(named);
-        let note = &mut |note: String| tell(format_args!("note: {note}"));
-        let mut folder = Folder::open(&place, Arc::new(experiment), Opening::default(), note)?;
-        self.progress.run_missing(&mut folder, None, None)?;
-        folder.finish(&STOP)?;
+        let folder = self.progress.finished(&place, experiment)?;
         let rows = rows(&folder)?;
         if self.shown.is_json() {
-            let row = |row: &Row| {
-                json!({"policy": row.policy, "mean": row.mean, "difference": row.difference,
-                    "interval": row.interval, "percent": row.percent})
-            };
-            return print_json(&json!({"rows": rows.iter().map(row).collect::<Vec<_>>()}));
+            return print_json(&json!({"rows": rows}));
         }
         let words = format!("rescuees.total of {} trials", self.trials);
         writeln!(out, "{}: {words}, paired by seed; minus {DRAW}", folder.experiment().name)?;
         let mut table = headed(["policy", "mean", "minus a draw", "95 % interval", "in %"]);
         for row in &rows {
-            let number = |value: Option<f64>| right(&value.map_or("-".to_owned(), short));
-            let interval =
-                row.interval.map_or("-".to_owned(), |[a, b]| format!("{} to {}", short(a), short(b)));
-            let percent = row.percent.map_or("-".to_owned(), |percent| format!("{percent:+.1}"));
-            let mean = right(&row.mean.map_or("-".to_owned(), |mean| digits(mean, 4)));
             table.add_row([
                 row.policy.as_str().into(),
-                mean,
+                mean(row.mean),
                 number(row.difference),
-                right(&interval),
-                right(&percent),
+                right(&between(row.interval)),
+                right(&or_dash(row.percent, |percent| format!("{percent:+.1}"))),
             ]);
         }
         print_table(out, &table)

@@ -9,37 +9,23 @@ use super::super::slurm::Tasks;
 use super::super::submit::quoted;
 use crate::prelude::*;
 
-/// The state of a shard.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum State {
-    /// All its trials are finished.
-    Done,
-    /// A process works in its folder.
-    Running,
-    /// Its task is in the queue.
-    Waiting,
-    /// Its task ended before the shard was done.
-    Failed,
-    /// The shard is neither done, nor running, nor in the queue.
-    Lost,
-    /// Its folder is not what `usar cluster merge` takes for this shard.
-    Refused,
-}
-
-impl State {
-    pub(super) const ALL: [Self; 6] =
-        [Self::Done, Self::Running, Self::Waiting, Self::Failed, Self::Lost, Self::Refused];
-
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Done => "done",
-            Self::Running => "running",
-            Self::Waiting => "waiting",
-            Self::Failed => "failed",
-            Self::Lost => "lost",
-            Self::Refused => "refused",
-        }
+ron_tree::named! {
+    /// The state of a shard.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "snake_case")]
+    pub(super) enum State {
+        /// All its trials are finished.
+        Done = "done",
+        /// A process works in its folder.
+        Running = "running",
+        /// Its task is in the queue.
+        Waiting = "waiting",
+        /// Its task ended before the shard was done.
+        Failed = "failed",
+        /// The shard is neither done, nor running, nor in the queue.
+        Lost = "lost",
+        /// Its folder is not what `usar cluster merge` takes for this shard.
+        Refused = "refused",
     }
 }
 

@@ -1,6 +1,5 @@
 //! `usar study yang2021 claims`: runs the paper's experiment and judges the paper's claims.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use experiments::sweep::folder::{Folder, Opening};
@@ -13,7 +12,7 @@ use study_yang2021::page::{Section, sections, write_page};
 use study_yang2021::predictions::{predictions, write_predictions};
 use study_yang2021::scenarios::{PAPERS_TRIALS, POLICIES, Standing, World, worlds};
 
-use crate::arguments::{ProgressArguments, ShownArguments, count};
+use crate::arguments::{ProgressArguments, ShownArguments, count, opened};
 use crate::input::check_trials;
 use crate::prelude::*;
 
@@ -102,8 +101,7 @@ impl Arguments {
         let World { standing, experiment } = world;
         let opening = Opening { shard: None, is_fresh: self.fresh };
         let place = self.out.join(&experiment.name);
-        let note = &mut |note: String| tell(format_args!("note: {note}"));
-        Ok((standing, Folder::open(&place, Arc::new(experiment), opening, note)?))
+        Ok((standing, opened(&place, experiment, opening)?))
     }
 
     /// Runs the missing trials.
