@@ -8,6 +8,10 @@ ci:
 ci-full: ci
     bash .ci/lab --test
 
+# The Python package: wheel, types, tests, and the programs of its pages, in a virtual environment of its own
+python:
+    bash .ci/python
+
 # The laboratory in one page: target/lab/usar-lab.html (docs/lab.md); installs Debian's rustc-web and rust-web-src
 lab:
     bash .ci/lab

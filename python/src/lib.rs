@@ -42,6 +42,7 @@ mod _usar {
     use super::trial::{group, run};
 
     #[pymodule_init]
+    #[expect(clippy::unnecessary_wraps, reason = "initialisers may fail")]
     fn init(_module: &Bound<'_, PyModule>) -> PyResult<()> {
         usar::carry();
         Ok(())

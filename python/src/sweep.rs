@@ -78,7 +78,7 @@ pub fn sweep(
         })?;
         folder.finish(&stop)
     };
-    let ran = wait_for(py, &stop, &tell, work);
+    let ran = wait_for(py, &stop, tell, work);
     policies.raised.check(py)?;
     ran?.map_err(raised)?;
     tell(py)

@@ -103,14 +103,14 @@ def sweep(
     """
     kept = None if out is not None else tempfile.TemporaryDirectory(prefix="usar-")
     path = Path(out) if out is not None else Path(kept.name if kept else "") / "results"
-    tell = _line if progress is True else progress or None
+    tell = _Line() if progress is True else progress or None
     settings = [f"{field}={_usar.ron(value)}" for field, value in (set or {}).items()]
     listed = None if policies is None else _listed(policies)
     try:
         _usar.sweep(file, listed, trials, first_seed, settings, path, jobs, tell)
     finally:
-        if progress is True:
-            sys.stderr.write("\r\x1b[K" if sys.stderr.isatty() else "")
+        if isinstance(tell, _Line):
+            tell.end()
     results = Results(path, frames)
     results._kept = kept
     return results
@@ -161,12 +161,21 @@ def _command(*words: str) -> str:
     raise (ValueError if done.returncode == 2 else RuntimeError)(done.stderr.strip().removeprefix("error: "))
 
 
-def _line(done: int, of: int) -> None:
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r{done} of {of} trials")
-        sys.stderr.flush()
-    elif done == of:
-        sys.stderr.write(f"{of} trials are done\n")
+class _Line:
+    """Progress as a line on stderr, rewritten on a terminal and written once at the end elsewhere."""
+
+    def __init__(self) -> None:
+        self._last = ""
+
+    def __call__(self, done: int, of: int) -> None:
+        self._last = f"{done} of {of} trials are done"
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r{self._last}")
+            sys.stderr.flush()
+
+    def end(self) -> None:
+        """Take the line away, or write it."""
+        sys.stderr.write("\r\x1b[K" if sys.stderr.isatty() else f"{self._last}\n" if self._last else "")
 
 
 def _is_there(module: str) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Callable, Optional, Protocol, TypedDict, Union
 
 
@@ -18,7 +18,7 @@ class Task(TypedDict):
 
     name: str
     difficulty: int
-    place: Optional[list[float]]
+    place: Optional[Sequence[float]]
     rescuees: Optional[int]
     value: Optional[float]
     requires: dict[str, float]
@@ -38,7 +38,7 @@ class Member(TypedDict):
 
     id: int
     role: int
-    home: list[float]
+    home: Sequence[float]
     needs: list[float]
     energy_level: Optional[float]
     hp_level: Optional[float]

@@ -8,9 +8,10 @@ drives the robots. The page docs/learning.md says what they observe and how acti
 from gymnasium.envs.registration import register
 
 from ._coordinator import Coordinator, Vector, vector
+from ._groups import settled
 from ._robots import Robots
 from ._velocities import Velocities
 
-__all__ = ["Coordinator", "Robots", "Vector", "Velocities", "vector"]
+__all__ = ["Coordinator", "Robots", "Vector", "Velocities", "settled", "vector"]
 
 register(id="usar/Coordinator-v0", entry_point="usar.env:Coordinator")
