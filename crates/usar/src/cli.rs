@@ -17,7 +17,7 @@ use crate::arguments::format_of;
 use crate::commands::{ASKED, Cli, command, completing};
 use crate::library;
 use crate::output::{columns_of, sentences};
-use crate::running::{STOP, is_stopped, status_of_signal, stop_on_signals, tell};
+use crate::running::{STOP, is_stopped, note_program, status_of_signal, stop_on_signals, tell};
 
 /// Runs the command with which the process was called. The exit status is 0 for a result, 1 for a failure
 /// of the run, 2 for unusable input, 3 for a disk error, 130 after Ctrl-C, 143 after SIGTERM and 129 after
@@ -45,6 +45,8 @@ pub fn main_with(policies: Registry) -> ExitCode {
 /// Runs a command line, its program first, and returns the exit status of [`main`]: for a program of another
 /// language.
 pub fn run(line: impl IntoIterator<Item = OsString>, policies: Registry) -> u8 {
+    let line: Vec<OsString> = line.into_iter().collect();
+    line.iter().take(1).for_each(|program| note_program(program));
     let mut registry = with_oracle(policies);
     // A caller's policy of the same name stays.
     let _ = registry.add(programs::kind(&STOP, stop_on_signals));

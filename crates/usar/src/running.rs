@@ -1,9 +1,11 @@
 //! Sessions of policies, signals, and messages on stderr.
 
+use std::ffi::OsStr;
 use std::fmt::Display;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, LazyLock, Once};
+use std::sync::{Arc, LazyLock, Once, OnceLock};
 use std::time::Instant;
 
 use experiments::Failure;
@@ -25,6 +27,25 @@ pub(crate) static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// The number of the signal that set [`STOP`]; 0 for none.
 static SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+
+/// The file of this program, where a command line had it.
+static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+
+/// Notes the first word of a command line, which is the program's file unless the shell looked for it.
+pub(crate) fn note_program(word: &OsStr) {
+    let named = Path::new(word);
+    if named.is_absolute() && named.is_file() {
+        let _ = PROGRAM.set(named.to_owned());
+    }
+}
+
+/// The file of this program: of a package for another language, its script and not that language.
+///
+/// # Errors
+/// The system does not say.
+pub(crate) fn program() -> std::io::Result<PathBuf> {
+    PROGRAM.get().cloned().map_or_else(std::env::current_exe, Ok)
+}
 
 /// Opens a session of a policy for a trial.
 pub(crate) fn session_of(

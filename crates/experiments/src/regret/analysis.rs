@@ -82,6 +82,9 @@ pub struct PolicyRegret {
     /// The share of the distance from a fair draw to the best assignment that the policy achieves: 0 for a
     /// fair draw, 1 for the best.
     pub achieved: Option<Estimate>,
+    /// What this share is of: the sums over all decisions of what the policy gains over a fair draw, and of
+    /// what the best assignment gains.
+    pub gains: [f64; 2],
 }
 
 /// The correlation of a feature with the outcome.
@@ -244,6 +247,7 @@ fn summary(criteria: &Criteria, labels: &[&str], looked: &[Looked], rows: Vec<De
     let spread = |decision: &Looked| (decision.range[0] - decision.range[1]).abs();
     let policy = |(place, label): (usize, &&str)| {
         let standing = |decision: &Looked| decision.standings[place];
+        let gains = achieved(looked, place);
         PolicyRegret {
             policy: (*label).to_owned(),
             regret: estimate(&|decision| Some(standing(decision)?.regret)),
@@ -251,7 +255,8 @@ fn summary(criteria: &Criteria, labels: &[&str], looked: &[Looked], rows: Vec<De
             outranked: estimate(&|decision| {
                 Some((standing(decision)?.rank - 1) as f64 / (decision.played.max(2) - 1) as f64)
             }),
-            achieved: Estimate::ratio(&achieved(looked, place)),
+            achieved: Estimate::ratio(&gains),
+            gains: gains.iter().fold([0.0; 2], |sums, gains| [sums[0] + gains[0], sums[1] + gains[1]]),
         }
     };
     let feature = |(place, feature): (usize, &super::features::Feature)| FeatureRow {

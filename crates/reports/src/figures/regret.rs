@@ -78,7 +78,8 @@ fn achieved(analyses: &[Analysis]) -> Result<Sketch, Failure> {
             let [value, low, high] = [value, low, high].map(|share| 100.0 * share);
             plot = plot.with_colored_row(policy.policy.clone(), value, low, high, "#0072B2");
             ends.extend([low, high]);
-            let numbers = [value, low, high].map(|share| share.to_string());
+            let [gained, achievable] = policy.gains;
+            let numbers = [value, low, high, gained, achievable].map(|number| number.to_string());
             rows.push([vec![analysis.metric.clone(), policy.policy.clone()], numbers.to_vec()].concat());
         }
         if ends.len() > 2 {
@@ -92,6 +93,6 @@ fn achieved(analyses: &[Analysis]) -> Result<Sketch, Failure> {
             over trials"
             .to_owned(),
         drawing: Drawing::new(panels, 2, [460.0, 280.0]),
-        csv: table(&["metric", "policy", "achieved_percent", "low", "high"], rows)?,
+        csv: table(&["metric", "policy", "achieved_percent", "low", "high", "gained", "achievable"], rows)?,
     })
 }

@@ -17,6 +17,7 @@ use crate::arguments::{Selection, count};
 use crate::bad_value::BadValue;
 use crate::library;
 use crate::prelude::*;
+use crate::running::program;
 use plan::Wishes;
 
 /// Run a sweep on a cluster: shards as an array of Slurm jobs, then merge and report
@@ -126,7 +127,7 @@ impl Arguments {
         };
         let directives = [directive("account", &self.account), directive("partition", &self.partition)];
         let directives: Vec<String> = directives.into_iter().flatten().collect();
-        let program = std::env::current_exe()?;
+        let program = program()?;
         let file = shown(&absolute(&self.file)?);
         let chosen = self.selection.arguments();
         let arguments: Vec<String> =
