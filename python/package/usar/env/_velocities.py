@@ -7,18 +7,17 @@ from typing import Any, Optional
 import numpy
 import numpy.typing
 from gymnasium import spaces
-from gymnasium.utils import seeding
-from pettingzoo import ParallelEnv
 
 from .._types import Policy
 from .._usar import Scenario, Simulation, group
+from ._agents import Agents, Infos, Step
 from ._view import agents, first_question
 
 Array = numpy.typing.NDArray[numpy.float32]
 NEAREST = 5
 
 
-class Velocities(ParallelEnv[str, Array, Array]):
+class Velocities(Agents[Array, Array]):
     """Robots driven at `hz`, on the physics of the simulator.
 
     An action is a velocity in shares of the top speed, in the plane. The mission goes on as always: `policy`
@@ -31,64 +30,39 @@ class Velocities(ParallelEnv[str, Array, Array]):
     """
 
     metadata: dict[str, Any] = {"name": "usar_velocities_v0", "render_modes": []}
-    render_mode = None
 
     def __init__(self, scenario: Scenario, policy: Policy = "DIS", hz: float = 10.0) -> None:
         self._steps = max(1, round(1.0 / (hz * scenario.step_s)))
         self._scenario, self._policy = scenario, policy
-        self.possible_agents = agents(scenario, first_question(scenario))
-        self.agents: list[str] = []
         near = [f"near_{at}_{axis}" for at in range(NEAREST) for axis in "xy"]
         self.feature_names = ["x", "y", "vx", "vy", "way_x", "way_y", "energy", "hp", *near]
-        box = spaces.Box(-1.0, 1.0, (len(self.feature_names),), numpy.float32)
-        self.observation_spaces = dict.fromkeys(self.possible_agents, box)
-        self.action_spaces = {
-            agent: spaces.Box(-1.0, 1.0, (2,), numpy.float32) for agent in self.possible_agents
-        }
-        self._draws = seeding.np_random()[0]
+        seen = spaces.Box(-1.0, 1.0, (len(self.feature_names),), numpy.float32)
+        names = agents(scenario, first_question(scenario))
+        super().__init__(names, seen, spaces.Box(-1.0, 1.0, (2,), numpy.float32))
         self._trial = Simulation(scenario, 1)
-
-    def observation_space(self, agent: str) -> spaces.Space[Any]:
-        """The space of an agent's observations."""
-        return self.observation_spaces[agent]
-
-    def action_space(self, agent: str) -> spaces.Space[Any]:
-        """The space of an agent's velocities."""
-        return self.action_spaces[agent]
 
     def reset(
         self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
-    ) -> tuple[dict[str, Array], dict[str, dict[str, Any]]]:
+    ) -> tuple[dict[str, Array], Infos]:
         """Begin the trial of a seed, or of one that is drawn."""
-        if seed is not None:
-            self._draws = seeding.np_random(seed)[0]
-        self._trial = Simulation(self._scenario, int(self._draws.integers(2**31)) if seed is None else seed)
+        self._trial = Simulation(self._scenario, self._seed(seed))
         self._trial.until_asked()
         self._answer()
         self.agents = self.possible_agents[:]
         return self._observations(), {agent: {} for agent in self.agents}
 
-    def step(self, actions: dict[str, Array]) -> tuple[
-        dict[str, Array],
-        dict[str, float],
-        dict[str, bool],
-        dict[str, bool],
-        dict[str, dict[str, Any]],
-    ]:
+    def step(self, actions: dict[str, Array]) -> Step[Array]:
         """Drive for a period."""
-        trial, driven = self._trial, self.agents
+        trial = self._trial
         wishes = numpy.array([actions[agent] for agent in self.possible_agents], numpy.float32)
         trial.steer(wishes * trial.top_speeds[:, None])
         before, left = trial.totals[0], self._steps
         while left > 0 and trial.status is None:
             left -= trial.step(left)
             self._answer()
-        status = trial.status
-        told = self._observations(), dict.fromkeys(driven, float(trial.totals[0] - before))
-        ends = dict.fromkeys(driven, status not in (None, "completed")), dict.fromkeys(driven, status == "completed")
-        if status is not None:
-            self.agents = []
-        return *told, *ends, {agent: {} for agent in driven}
+        ends = trial.status not in (None, "completed"), trial.status == "completed"
+        infos: Infos = {agent: {} for agent in self.agents}
+        return self._stepped(self._observations(), float(trial.totals[0] - before), ends, infos)
 
     def _answer(self) -> None:
         """Answer the question that waits, if there is one."""
