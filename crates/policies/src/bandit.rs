@@ -4,8 +4,8 @@
 //! Framework and Applications*, ICML): a pair of a member and a task that was tried n times in t rounds
 //! counts with `mean + width * sqrt(3 ln t / (2 n))`, where the mean of what the member rescued there goes
 //! over the most that any member rescued in a round. A pair that was never tried counts more than any other.
-//! The assignment with the largest sum is that of OPTIMAL on these numbers. Time: the cube of a role's
-//! members.
+//! The assignment with the largest sum is that of OPTIMAL on these numbers. Time: the square of a
+//! role's members at most.
 //!
 //! Example: of two robots and two tasks of one slot each, the first robot goes to the harder task in round 1,
 //! and they are swapped in round 2. With 4 and 1 rescued in round 1, and 2 and 2 in round 2, the means over

@@ -1,8 +1,8 @@
 //! `OPTIMAL(quality, distance)`: the largest sum of the [utility](crate::utility), exactly.
 //!
-//! The assignment problem of each role is solved by the Hungarian method (Kuhn 1955, *The Hungarian Method
-//! for the Assignment Problem*, Naval Research Logistics Quarterly 2; Munkres 1957). The sum of the account
-//! is added up again from the utilities as they are. Time: the cube of a role's members.
+//! Each role is a transport problem, solved by successive shortest paths (Ahuja, Magnanti, Orlin 1993,
+//! *Network Flows*, section 9.7). The sum of the account is added up again from the utilities as they are.
+//! Time: the square of a role's members at most.
 //!
 //! Example: two robots have utilities (1, 0.99) and (1, 0) at two tasks of one slot each. OPTIMAL sends the
 //! first one to the second task, 1.99 in all; GREEDY takes the first 1 and gets 1.00.
