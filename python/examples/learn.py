@@ -64,9 +64,8 @@ def play(many: usar.env.Vector, weights: Any, seeds: list[int]) -> Any:
     seen, _ = many.reset(seed=seeds)
     robots, tasks = many.single_observation_space["action_mask"].shape  # type: ignore[index]
     names = many.feature_names
-    columns = [
-        at for at, name in enumerate(names[: len(names) // robots]) if name.startswith(("robot_0_energy", "robot_0_hp", "robot_0_need_"))
-    ]
+    known = ("robot_0_energy", "robot_0_hp", "robot_0_need_")
+    columns = [at for at, name in enumerate(names) if name.startswith(known)]
     of_role = [at for at, name in enumerate(names) if name.startswith("robot_0_role_")]
     own = sum(name.startswith("robot_0_") for name in names)
     ranks = [at for at, name in enumerate(names) if name.endswith("_difficulty")]

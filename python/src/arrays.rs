@@ -1,4 +1,4 @@
-//! Arrays of numpy. Their memory is filled once, and not copied.
+//! Arrays of numpy, which cannot be written to.
 
 use parry2d::math::Vector;
 use pyo3::exceptions::PyValueError;

@@ -32,7 +32,7 @@ pub fn unusable(py: Python<'_>, error: Unusable) -> PyErr {
     };
     let raised = ScenarioError::new_err(message);
     let value = raised.value(py);
-    let set = value.setattr("file", file).and_then(|()| value.setattr("line", line));
+    let set = value.setattr("file", file.display().to_string()).and_then(|()| value.setattr("line", line));
     set.and_then(|()| value.setattr("field", field)).map_or_else(|error| error, |()| raised)
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use pyo3::exceptions::PyTypeError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use usar_sim::scenario::{Problems, Scenario as Checked, ScenarioError, ScenarioFile};
@@ -44,8 +44,9 @@ impl Scenario {
     /// A scenario that the package has, by its name: `usar scenario list` has them.
     #[staticmethod]
     fn builtin(py: Python<'_>, name: &str) -> PyResult<Self> {
-        let path = usar::scenario_path(name).unwrap_or_else(|never| match never {});
-        Self::load(py, path)
+        let known =
+            || PyValueError::new_err(format!("no scenario is called {name:?}; `usar scenario list` has all"));
+        Self::load(py, usar::carried(name).ok_or_else(known)?)
     }
 
     /// The scenario with fields set, each by its path. Numbers, booleans, lists and None are those of Python; a

@@ -10,8 +10,9 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use rne_core::{Assignment, Deadline, Decision, Session};
-use usar_sim::record::Status;
+use usar_sim::record::{Status, TrialRecord};
 use usar_sim::robot::Robot;
 use usar_sim::simulation::{Advance, Simulation as Trial};
 
@@ -114,9 +115,10 @@ impl Simulation {
             let onwards = None::<&mut Box<dyn Session>>;
             play(&start, Decision::of(assignment.clone()), onwards, Deadline::when(&stop))
         };
+        let pool = pool(0)?;
         let work = || {
             survey(question, &objective, limit, &[], |batch| {
-                batch.par_iter().map(one).collect::<Result<Vec<_>, BranchError>>()
+                pool.install(|| batch.par_iter().map(one).collect::<Result<Vec<_>, BranchError>>())
             })
         };
         let played = wait_for(py, &stop, |_| Ok(()), work)?;
@@ -125,10 +127,12 @@ impl Simulation {
         Ok(ranked.map(|one| (one.assignment.groups.clone(), objective.value(&one.outcome))).collect())
     }
 
-    /// The record of the trial up to now.
+    /// The record of the trial, once it is over.
     fn record<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let mut record = self.it.checkpoint().resume().finish();
-        record.status = self.it.ending().unwrap_or(Status::Completed);
+        let Some(status) = self.it.ending() else {
+            return Err(PyValueError::new_err("the trial is not over; finish(policy) goes on to its end"));
+        };
+        let record = TrialRecord { status, ..self.it.checkpoint().resume().finish() };
         recorded(py, &record, &self.it.given().name, BY_HAND)
     }
 
@@ -182,7 +186,7 @@ impl Simulation {
         points(py, self.it.world().robots.iter().map(next))
     }
 
-    /// For each robot, its present top speed in metres a second.
+    /// For each robot, its present top speed in metres a second, if no fault slows it.
     #[getter]
     fn top_speeds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let (crew, model) = (&self.it.mission().crew, self.it.model());
@@ -275,11 +279,16 @@ pub fn advance_all(
     mut trials: Vec<PyRefMut<'_, Simulation>>,
     threads: usize,
 ) -> PyResult<()> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let pool = pool(threads)?;
     let stop = AtomicBool::new(false);
     let mut trials: Vec<&mut Trial> = trials.iter_mut().map(|trial| &mut trial.it).collect();
     let work =
         || pool.install(|| trials.par_iter_mut().for_each(|trial| Simulation::to_question(trial, &stop)));
     wait_for(py, &stop, |_| Ok(()), work)
+}
+
+/// Threads of one call; 0 for one on each core. They do not outlive it, so that a process may fork.
+fn pool(threads: usize) -> PyResult<ThreadPool> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }

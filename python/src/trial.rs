@@ -18,8 +18,6 @@ use crate::waiting::wait_for;
 
 /// Run one trial to its end.
 ///
-/// Nothing else runs in this process while it does, but Ctrl-C ends it.
-///
 /// >>> import usar
 /// >>> paper = usar.Scenario.builtin("paper").set(duration_s=120)
 /// >>> usar.run(paper, "ENG", seed=7)
@@ -101,7 +99,8 @@ pub fn recorded<'py>(
     py.import("usar._records")?.getattr("Record")?.call1((fields,))
 }
 
-/// Answer a question by a policy: the ids of each task's group.
+/// Answer a question by a policy: the ids of each task's group, or a dict with `groups` and `idle` where robots
+/// stay at home.
 ///
 /// >>> import usar
 /// >>> trial = usar.Simulation(usar.Scenario.builtin("paper"), seed=1)
@@ -109,7 +108,7 @@ pub fn recorded<'py>(
 /// [[0, 2, 4, 6, 7, 11], [1, 3, 5, 8, 9, 10]]
 #[pyfunction]
 #[pyo3(signature = (question, policy=None), text_signature = "(question, policy='RNE')")]
-pub fn group(question: &Bound<'_, PyAny>, policy: Option<Bound<'_, PyAny>>) -> PyResult<Vec<Vec<u32>>> {
+pub fn group(question: &Bound<'_, PyAny>, policy: Option<Bound<'_, PyAny>>) -> PyResult<Py<PyAny>> {
     let py = question.py();
     let question: Question = depythonize(question)?;
     let question = question.checked().map_err(|error| PyValueError::new_err(error.to_string()))?;
@@ -120,5 +119,8 @@ pub fn group(question: &Bound<'_, PyAny>, policy: Option<Bound<'_, PyAny>>) -> P
     policies.raised.check(py)?;
     let round = Some(question.round.into());
     let decision = decision.map_err(|error| failed(py, &spec, None, round, &error))?;
-    Ok(decision.assignment.groups)
+    let answer = decision.assignment;
+    let answer =
+        if answer.idle.is_empty() { pythonize(py, &answer.groups)? } else { pythonize(py, &answer)? };
+    Ok(answer.unbind())
 }

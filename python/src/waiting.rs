@@ -28,7 +28,7 @@ pub fn wait_for<T: Send>(
                 catch_unwind(AssertUnwindSafe(work))
             });
             let mut raised = None;
-            while end.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) && raised.is_none() {
+            while raised.is_none() && end.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
                 raised = Python::attach(|py| py.check_signals().and_then(|()| tick(py))).err();
             }
             if raised.is_some() {

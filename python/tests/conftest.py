@@ -6,7 +6,6 @@ import os
 import random
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any, Callable
 
 import pytest
@@ -83,5 +82,3 @@ def random_question(seed: int) -> Any:
         "random_seed": f"{seed:064x}",
     }
 
-
-assert Path(usar.__file__).exists()

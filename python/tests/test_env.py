@@ -102,6 +102,37 @@ def test_nobody_who_can_carry_is_a_termination() -> None:
     assert ends == (True, False)
 
 
+def test_rewards_are_what_the_trial_gained() -> None:
+    scenario, sums = usar.Scenario.builtin("paper"), {}
+    for weights in [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]:
+        env = usar.env.Coordinator(scenario, reward=weights)
+        env.reset(seed=3)
+        sums[weights], is_over = 0.0, False
+        while not is_over:
+            _, reward, *ends, info = env.step(numpy.zeros(12, int))
+            sums[weights], is_over = sums[weights] + reward, any(ends[:2])
+    rescued, energy, hp = sums.values()
+    assert rescued == info["rescued"] > 100 and energy < -500 and -1000 < hp < 0
+    with pytest.raises(ValueError, match="three weights"):
+        usar.env.Coordinator(scenario, reward=(1,)).reset(seed=1)
+    env.reset(seed=3)
+    with pytest.raises(ValueError, match="wishes must be tasks from 0 to 1"):
+        env.step(numpy.full(12, -1))
+
+
+def test_robots_go_where_actions_send_them() -> None:
+    scenario = usar.Scenario.builtin("paper").set(duration_s=20, **{"conflicts.resolver": "None"})
+    with pytest.raises(ValueError, match="hz must be above 0 and at most 50"):
+        usar.env.Velocities(scenario, hz=100)
+    env = usar.env.Velocities(scenario, hz=10)
+    env.reset(seed=1)
+    start = env._trial.positions
+    for _ in range(10):
+        env.step(dict.fromkeys(env.agents, numpy.array([0.0, 0.3], numpy.float32)))
+    way = env._trial.positions - start
+    assert (way[:, 1] > 0.1).sum() >= 10 and (abs(way[:, 0]) < 0.2).sum() >= 10
+
+
 def test_a_world_that_cannot_be_one_is_refused() -> None:
     with pytest.raises(ValueError, match="chance: an environment needs a team of one size"):
         usar.env.Robots(usar.Scenario.builtin("gallery/chance"))

@@ -14,7 +14,7 @@ mod recordings;
 mod running;
 
 pub use cli::{main, main_with, run};
-pub use library::{carry, path as scenario_path};
+pub use library::{carried, carry, path as scenario_path};
 
 /// The program on the page about policies compiles.
 #[cfg(doctest)]

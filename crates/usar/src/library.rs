@@ -43,6 +43,12 @@ pub(crate) fn named(name: &str) -> Option<&'static (&'static str, &'static str)>
     FILES.iter().find(|(file, _)| is_named(file))
 }
 
+/// The path of a carried scenario by its name.
+#[must_use]
+pub fn carried(name: &str) -> Option<PathBuf> {
+    named(name).map(|(file, _)| PathBuf::from(format!("{CARRIED}{file}")))
+}
+
 /// The names of the carried scenarios, without those of their sweeps, with their texts.
 pub(crate) fn scenarios() -> impl Iterator<Item = (&'static str, &'static str)> {
     let name = |file: &'static str| file.rsplit('/').next().and_then(|last| last.strip_suffix(".ron"));
@@ -57,8 +63,8 @@ pub(crate) fn scenarios() -> impl Iterator<Item = (&'static str, &'static str)> 
 #[expect(clippy::unnecessary_wraps, reason = "clap takes parsers that may fail")]
 pub fn path(text: &str) -> Result<PathBuf, Infallible> {
     let path = Path::new(text);
-    let carried = if is_file(path) || text.ends_with('/') { None } else { named(text) };
-    Ok(carried.map_or_else(|| path.to_owned(), |(file, _)| PathBuf::from(format!("{CARRIED}{file}"))))
+    let carried = if is_file(path) || text.ends_with('/') { None } else { carried(text) };
+    Ok(carried.unwrap_or_else(|| path.to_owned()))
 }
 
 #[cfg(test)]

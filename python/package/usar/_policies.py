@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import inspect
+import os
+import pickle
 import re
 from dataclasses import dataclass
 from typing import Any, Callable, Optional, Union
@@ -21,8 +23,8 @@ class Own:
     deterministic: bool
 
 
-def given(policy: Policy, name: Optional[str] = None) -> Union[str, Own]:
-    """The policy under this name, or under its own."""
+def given(policy: Policy, name: Optional[str] = None, is_kept: bool = False) -> Union[str, Own]:
+    """The policy under this name, or under its own; with a fingerprint if its trials are kept."""
     if isinstance(policy, str):
         return policy if name in (None, policy) else f"{name}={policy}"
     decide: Any = getattr(policy, "decide", policy)
@@ -38,17 +40,24 @@ def given(policy: Policy, name: Optional[str] = None) -> Union[str, Own]:
             'give it one with policies={"name": policy}, or an attribute `name`'
         )
     deterministic = bool(getattr(policy, "deterministic", True))
-    return Own(str(own), decide, _fingerprint(policy), deterministic)
+    return Own(str(own), decide, _fingerprint(policy) if is_kept else "", deterministic)
 
 
 def _fingerprint(policy: Any) -> str:
-    """A text that changes with the policy's source, its version and its public values."""
-    source = policy if inspect.isroutine(policy) or inspect.isclass(policy) else type(policy)
+    """A text that changes with the policy's source, its version and its values; always, if those cannot tell."""
+    is_plain = inspect.isroutine(policy) or inspect.isclass(policy)
     try:
-        text = inspect.getsource(source)
-    except (OSError, TypeError):  # typed at a prompt, or not in Python
-        code = getattr(policy, "__code__", None)
-        text = repr(policy) if code is None else f"{code.co_code!r} {code.co_consts!r} {code.co_names!r}"
-    values = {} if inspect.isroutine(policy) else dict(sorted(getattr(policy, "__dict__", {}).items()))
-    text = f"{text}\n{getattr(policy, 'version', '')}\n{values!r}"
-    return "python " + hashlib.sha256(text.encode()).hexdigest()[:32]
+        source = inspect.getsource(policy if is_plain else type(policy))
+        text = f"{source}\n{getattr(policy, 'version', '')}".encode() + pickle.dumps(_values(policy))
+    except Exception:  # typed at a prompt, not in Python, or values that cannot be written
+        text = os.urandom(16)
+    return "python " + hashlib.sha256(text).hexdigest()[:32]
+
+
+def _values(policy: Any) -> list[Any]:
+    """What a function or an object has beside its source."""
+    function = getattr(policy, "__func__", policy)
+    closed = [cell.cell_contents for cell in getattr(function, "__closure__", None) or ()]
+    defaults = [getattr(function, name, None) for name in ("__defaults__", "__kwdefaults__")]
+    owner = getattr(policy, "__self__", policy)
+    return [closed, defaults, None if inspect.isclass(owner) else getattr(owner, "__dict__", None)]

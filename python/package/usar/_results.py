@@ -6,9 +6,13 @@ import csv
 import importlib.util
 import json
 import os
+import re
+import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
+import weakref
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, Callable, Optional, Union
@@ -16,6 +20,8 @@ from typing import Any, Callable, Optional, Union
 from . import _usar
 from ._policies import given
 from ._types import Policy
+
+HASH = "state_hash"  # text, even where it looks like a number
 
 Policies = Union[Iterable[Policy], Mapping[str, Policy]]
 
@@ -34,7 +40,6 @@ class Results:
         if frames not in (None, "pandas", "polars", "lists"):
             raise ValueError(f'frames must be "pandas", "polars" or "lists", found {frames!r}')
         self._frames = frames
-        self._kept: Optional[tempfile.TemporaryDirectory[str]] = None
 
     @property
     def trials(self) -> Any:
@@ -58,13 +63,16 @@ class Results:
         if frames == "pandas":
             import pandas
 
-            return pandas.read_csv(path, keep_default_na=False, na_values="")
+            return pandas.read_csv(path, keep_default_na=False, na_values="", dtype={HASH: str})
         if frames == "polars":
             import polars
 
-            return polars.read_csv(path, infer_schema_length=None)
+            with path.open() as file:
+                texts = {HASH: polars.String} if HASH in file.readline().split(",") else None
+            return polars.read_csv(path, infer_schema_length=None, schema_overrides=texts)
         with path.open(newline="") as file:
-            return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(file)]
+            rows = csv.DictReader(file)
+            return [{key: text if key == HASH else _value(text) for key, text in row.items()} for row in rows]
 
     def __repr__(self) -> str:
         return f"<usar.Results in {self.path}>"
@@ -89,7 +97,8 @@ def sweep(
     `out`, finished trials stay there, and the same call goes on where it was interrupted or a policy
     raised an exception; without it, they last as long as the results. `jobs` is the number of threads; a
     policy in Python holds them up, because only one of them runs Python at a time. `progress` prints a
-    line on stderr, or is called with the numbers of trials that are done and that there are.
+    line on stderr, or is called with the numbers of trials that are done and that there are. Threads share a
+    policy in Python.
 
     >>> import usar
     >>> def by_id(question):
@@ -101,8 +110,10 @@ def sweep(
     >>> [(row["policy"], row["trial"]) for row in results.trials]
     [('by_id', 1), ('by_id', 2), ('DIS', 1), ('DIS', 2)]
     """
-    kept = None if out is not None else tempfile.TemporaryDirectory(prefix="usar-")
-    path = Path(out) if out is not None else Path(kept.name if kept else "") / "results"
+    if jobs is not None and jobs < 1:
+        raise ValueError(f"jobs must be at least 1, found {jobs}")
+    kept = None if out is not None else tempfile.mkdtemp(prefix="usar-")
+    path = Path(out or kept or "") / ("results" if out is None else "")
     tell = _Line() if progress is True else progress or None
     settings = [f"{field}={_usar.ron(value)}" for field, value in (set or {}).items()]
     listed = None if policies is None else _listed(policies)
@@ -112,7 +123,12 @@ def sweep(
         if isinstance(tell, _Line):
             tell.end()
     results = Results(path, frames)
-    results._kept = kept
+    if kept is not None:
+        weakref.finalize(results, shutil.rmtree, kept, ignore_errors=True)
+    with (path / "trials.csv").open(newline="") as table:
+        failed = sum(row["status"] in ("failed", "panicked", "timed_out") for row in csv.DictReader(table))
+    if failed:
+        warnings.warn(f"{failed} trials failed: the column status of results.trials has them", stacklevel=2)
     return results
 
 
@@ -149,8 +165,8 @@ def _listed(policies: Policies) -> list[Any]:
     if isinstance(policies, str):
         raise TypeError(f"policies must be a list or a dict, found the text {policies!r}")
     if isinstance(policies, Mapping):
-        return [given(policy, name) for name, policy in policies.items()]
-    return [given(policy) for policy in policies]
+        return [given(policy, name, is_kept=True) for name, policy in policies.items()]
+    return [given(policy, is_kept=True) for policy in policies]
 
 
 def _command(*words: str) -> str:
@@ -183,11 +199,8 @@ def _is_there(module: str) -> bool:
 
 
 def _value(text: str) -> Any:
-    if text == "":
-        return None
-    for kind in (int, float):
-        try:
-            return kind(text)
-        except ValueError:
-            continue
-    return text
+    if re.fullmatch(r"-?\d+", text):
+        return int(text)
+    if re.fullmatch(r"-?\d+(\.\d+)?([eE][+-]?\d+)?", text):
+        return float(text)
+    return text or None

@@ -1,7 +1,7 @@
 """The native half."""
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Optional, Union
 
@@ -10,7 +10,7 @@ import numpy.typing
 
 from ._policies import Own
 from ._records import Record
-from ._types import Groups, Policy, Question
+from ._types import Answer, Groups, Policy, Question
 
 class ScenarioError(ValueError):
     file: str
@@ -89,8 +89,10 @@ class Simulation:
     def beliefs(self) -> dict[str, numpy.typing.NDArray[numpy.float32]]: ...
 
 def run(scenario: Scenario, policy: Policy = "RNE", seed: int = 1) -> Record: ...
-def group(question: Question, policy: Policy = "RNE") -> list[list[int]]: ...
-def rne(trustor: Iterable[float], trustee: Iterable[float], weights: Optional[Iterable[float]] = None) -> float: ...
+def group(question: Question, policy: Policy = "RNE") -> Union[list[list[int]], Answer]: ...
+def rne(
+    trustor: Sequence[float], trustee: Sequence[float], weights: Optional[Sequence[float]] = None
+) -> float: ...
 def advance_all(trials: list[Simulation], threads: int) -> None: ...
 def ron(value: Any) -> str: ...
 def command(words: list[str]) -> int: ...

@@ -43,7 +43,7 @@ class Agents(ParallelEnv[str, Seen, Done], Generic[Seen, Done]):
         self._draws = seeding.np_random(seed)[0]
         return seed
 
-    def _stepped(self, seen: dict[str, Seen], reward: float, ends: tuple[bool, bool], infos: Infos) -> "Step[Seen]":
+    def _stepped(self, seen: dict[str, Seen], reward: float, ends: tuple[bool, bool], infos: Infos) -> Step[Seen]:
         """What a step returns: the same reward and end for all."""
         rewards = dict.fromkeys(self.agents, reward)
         terminated, truncated = (dict.fromkeys(self.agents, end) for end in ends)

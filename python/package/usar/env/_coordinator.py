@@ -10,6 +10,7 @@ import gymnasium
 import numpy
 import numpy.typing
 from gymnasium import spaces
+from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
@@ -26,6 +27,8 @@ class Trial:
     """A trial as environments see it: decisions, rewards, and how it ends."""
 
     def __init__(self, view: View, reward: Reward, seed: int) -> None:
+        if len(reward) != 3:
+            raise ValueError(f"reward must have three weights: of rescuees, energy and HP; found {reward}")
         self.view, self.weights = view, numpy.array([1.0, -1.0, -1.0]) * reward
         self.simulation = Simulation(view.scenario, seed)
         self.question: Optional[Question] = None
@@ -35,6 +38,8 @@ class Trial:
         """Send the members of the question to tasks; return those that were moved."""
         assert self.question is not None, "the trial is over: reset it"
         asked = {member["id"]: int(wishes[member["id"]]) for member in self.question["members"]}
+        if unknown := {robot: task for robot, task in asked.items() if not 0 <= task < self.view.tasks}:
+            raise ValueError(f"wishes must be tasks from 0 to {self.view.tasks - 1}, found {unknown}")
         groups, moved = settled(self.question, asked)
         self.simulation.assign(groups)
         return moved
@@ -136,7 +141,7 @@ class Vector(VectorEnv[Observation, numpy.typing.NDArray[Any], numpy.typing.NDAr
         self.observation_space = batch_space(self.single_observation_space, n)
         self.action_space = batch_space(self.single_action_space, n)
         self.feature_names = _feature_names(self._view)
-        self._draws = [numpy.random.default_rng(number) for number in range(n)]
+        self._draws = [seeding.np_random()[0] for _ in range(n)]
         self._trials: list[Trial] = []
         self._is_over = numpy.zeros(n, bool)
 
@@ -147,12 +152,12 @@ class Vector(VectorEnv[Observation, numpy.typing.NDArray[Any], numpy.typing.NDAr
         options: Optional[dict[str, Any]] = None,
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin all trials."""
-        if seed is None or isinstance(seed, int):
-            seeds: list[Optional[int]] = [None if seed is None else seed + at for at in range(self.num_envs)]
+        if seed is None or isinstance(seed, (int, numpy.integer)):
+            seeds: list[Optional[int]] = [None if seed is None else int(seed) + at for at in range(self.num_envs)]
         else:
             seeds = list(seed)
         self._draws = [
-            draws if seed is None else gymnasium.utils.seeding.np_random(seed)[0]
+            draws if seed is None else seeding.np_random(seed)[0]
             for seed, draws in zip(seeds, self._draws)
         ]
         self._trials = [self._begin(at, seed) for at, seed in enumerate(seeds)]

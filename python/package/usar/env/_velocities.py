@@ -32,7 +32,9 @@ class Velocities(Agents[Array, Array]):
     metadata: dict[str, Any] = {"name": "usar_velocities_v0", "render_modes": []}
 
     def __init__(self, scenario: Scenario, policy: Policy = "DIS", hz: float = 10.0) -> None:
-        self._steps = max(1, round(1.0 / (hz * scenario.step_s)))
+        if not 0.0 < hz <= 1.0 / scenario.step_s:
+            raise ValueError(f"hz must be above 0 and at most {1.0 / scenario.step_s:g}, found {hz}")
+        self._steps = round(1.0 / (hz * scenario.step_s))
         self._scenario, self._policy = scenario, policy
         near = [f"near_{at}_{axis}" for at in range(NEAREST) for axis in "xy"]
         self.feature_names = ["x", "y", "vx", "vy", "way_x", "way_y", "energy", "hp", *near]
