@@ -38,16 +38,12 @@ pub fn cbba(problem: &Problem) -> f64 {
             problem.tasks[*task].requires & !skills == 0
         };
         let next = schedule.open().filter(is_planned).min_by(|a, b| planned[*a].0.total_cmp(&planned[*b].0));
-        let (task, team) = match next {
-            Some(task) => (task, planned[task].1.clone()),
-            None => {
-                let teams = schedule.open().filter_map(|task| schedule.team(task, 0.0));
-                match teams.min_by(|a, b| a.start.total_cmp(&b.start)) {
-                    Some(team) => (team.task, team.joining),
-                    None => return schedule.makespan(),
-                }
-            }
+        let rule = || {
+            let teams = schedule.open().filter_map(|task| schedule.team(task, 0.0));
+            teams.min_by(|a, b| a.start.total_cmp(&b.start)).map(|team| (team.task, team.joining))
         };
+        let planned = next.map(|task| (task, planned[task].1.clone()));
+        let Some((task, team)) = planned.or_else(rule) else { return schedule.makespan() };
         for robot in team {
             if schedule.missing(task) & problem.robots[robot] != 0 {
                 schedule.commit(robot, task, 0.0);

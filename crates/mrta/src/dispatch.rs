@@ -1,17 +1,17 @@
 //! Schedules by a policy, which is asked whenever a robot becomes free.
 //!
-//! The question has the tasks that are not covered yet, and the robots whose skills some of them lack. Roles
-//! are robots with the same skills, and needs are skills: 1 for a robot that has one. For each task whose
-//! predecessors are covered, the group with which it starts the earliest says how many robots of which role it
-//! gets; the policy says which. Robots are often fewer than such slots. Then a robot stands in the question
-//! once for each turn that it could take, all at the place where it is: what its first turn gets is what it
-//! does now, and the other turns are thrown away. If robots are more than slots, the rest goes to the task
-//! `end` at the last location, and waits where it is. The longer a task and all after it take, the harder it
-//! is.
+//! The question has the tasks that are not covered yet, and the robots whose skills some of them lack.
+//! Roles are robots with the same skills, and needs are skills: 1 for a robot that has one. For each task
+//! whose predecessors are covered, the group with which it starts the earliest says how many robots of
+//! which role it gets; the policy says which. Robots are often fewer than such slots. Then a robot stands
+//! in the question once for each turn that it could take, all at the place where it is: what its first turn
+//! gets is what it does now, and the other turns are thrown away. If robots are more than slots, the rest
+//! goes to the task `end` at the last location, and waits where it is. The longer a task and all after it
+//! take, the harder it is.
 //!
 //! Robots that go to a task are bound to it until it is over. A robot is not bound if this could end with
-//! robots that wait for each other at different tasks. As long as an answer binds robots, the policy is asked
-//! about those that are left.
+//! robots that wait for each other at different tasks. As long as an answer binds robots, the policy is
+//! asked about those that are left.
 
 use rne_core::question::{Member, Need, RandomSeed, SCHEMA_VERSION, Task as Asked};
 use rne_core::session::TrialStart;

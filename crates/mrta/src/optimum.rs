@@ -1,11 +1,12 @@
 //! The least makespan of a small problem, exactly.
 //!
-//! Dynamic programming over sets of covered tasks: a state is the set, where each robot is, when it is free,
-//! and when those tasks are over that others wait for. Of two states with the same set and places, one that is
-//! nowhere later makes the other one needless, so that each set and places have a Pareto set of times. Groups
-//! have no member that could be left out, which loses nothing if no way is longer than a detour. A state is
-//! dropped if a bound says that it comes to nothing better than the rule of the earliest start: each robot has
-//! to visit the tasks for which it alone has a skill (Held, Karp 1962), and each task is followed by its tail.
+//! Dynamic programming over sets of covered tasks: a state is the set, where each robot is, when it is
+//! free, and when those tasks are over that others wait for. Of two states with the same set and places,
+//! one that is nowhere later makes the other one needless, so that each set and places have a Pareto set of
+//! times. Groups have no member that could be left out, which loses nothing if no way is longer than a
+//! detour. A state is dropped if a bound says that it comes to nothing better than the rule of the earliest
+//! start: each robot has to visit the tasks for which it alone has a skill (Held, Karp 1962), and each task
+//! is followed by its tail.
 //!
 //! Time: exponential in tasks and robots; milliseconds for 8 tasks and 3 robots.
 
@@ -90,7 +91,7 @@ struct Search<'p> {
     able: Vec<Vec<u8>>,
     /// For each robot, the tasks for which it alone has a skill.
     own: Vec<u16>,
-    /// For each robot, its shortest way from each place through each set of its own tasks to the last location.
+    /// For each robot, its shortest way from each place through each set of its own tasks to the end.
     tours: Vec<Vec<Vec<f64>>>,
 }
 

@@ -1,10 +1,10 @@
 //! Problems as JSON, in the form of MRTA-Benchmark.
 //!
-//! `Q` has a row for each robot and a 0 or 1 for each skill. `R` has a row for each task, in the same way, and
-//! `T_e` how long each takes; the first and the last row are no tasks, but the first and the last location,
-//! and are 0. `task_locations` has a place for each row of `R`. `precedence_constraints` has pairs of rows:
-//! the first must be over before the second. `T_t` has the time of travel between all rows; without it,
-//! distance is time.
+//! `Q` has a row for each robot and a 0 or 1 for each skill. `R` has a row for each task, in the same way,
+//! and `T_e` how long each takes; the first and the last row are no tasks, but the first and the last
+//! location, and are 0. `task_locations` has a place for each row of `R`. `precedence_constraints` has
+//! pairs of rows: the first must be over before the second. `T_t` has the time of travel between all rows;
+//! without it, distance is time.
 
 use std::fmt;
 
@@ -186,7 +186,7 @@ impl Reader<'_> {
                 self.refuse(format!("{field}[{at}]"), "have 0 or 1 for each skill", other);
             }
         }
-        let bit = |(skill, has): (usize, &f64)| if *has == 1.0 { 1 << skill } else { 0 };
+        let bit = |(skill, has): (usize, &f64)| if *has > 0.5 { 1 << skill } else { 0 };
         rows.iter().map(|row| row.iter().take(64).enumerate().map(bit).sum()).collect()
     }
 

@@ -84,7 +84,7 @@ impl<'p> Schedule<'p> {
     }
 
     /// The group with which a task starts the earliest, of robots that are bound to no other task; `None` if
-    /// they lack a skill. Of equal groups, robots that cover more come first, then the sooner, then lower ids.
+    /// they lack a skill. Robots that cover more come first, then the sooner, then lower ids.
     pub(crate) fn team(&self, task: usize, now: f64) -> Option<Team> {
         let mut missing = self.missing(task);
         let useful = (0..self.ready.len())

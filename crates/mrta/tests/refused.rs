@@ -37,7 +37,7 @@ fn every_bad_field_is_told_with_rule_and_found_value() {
         (
             "R",
             "[[1,0],[1,1]]",
-            "R: must have a first and a last row of zeros, and a row for each task between them, found 2 rows",
+            "R: must have a first and a last row of zeros, and a row for each task between them, found 2",
         ),
         (
             "R",

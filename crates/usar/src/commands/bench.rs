@@ -19,14 +19,15 @@ use summary::{Method, Solved};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Robots with skills, tasks that need groups with certain skills for some time, ways, and an order: how much \
-longer does a schedule take than the shortest one? A problem is a JSON file of MRTA-Benchmark: Q (skills of \
-robots), R (skills that tasks require), T_e (how long tasks take), task_locations, precedence_constraints and, \
-if ways take other times than their lengths, T_t. A folder stands for all of its .json files.
+longer does a schedule take than the shortest one? A problem is a JSON file of MRTA-Benchmark: Q (skills \
+of robots), R (skills that tasks require), T_e (how long tasks take), task_locations, \
+precedence_constraints and, if ways take other times than their lengths, T_t. A folder stands for all of \
+its .json files.
 
-Problems of at most 10 tasks and 4 robots are solved exactly. Gaps are in percent of the optimum, or of the \
-best schedule found where a problem is larger. A policy is asked whenever a robot becomes free, over the tasks \
-that are left. Two methods plan without being asked: EARLIEST takes the task that can start the earliest, \
-again and again; CBBA is the auction with bundles of sequences. docs/bench.md has the rules.
+Problems of at most 10 tasks and 4 robots are solved exactly. Gaps are in percent of the optimum, or of \
+the best schedule found where a problem is larger. A policy is asked whenever a robot becomes free, over \
+the tasks that are left. Two methods plan without being asked: EARLIEST takes the task that can start the \
+earliest, again and again; CBBA is the auction with bundles of sequences. docs/bench.md has the rules.
 
 --out gets makespans.csv, and the problems that were made (problems/).
 
