@@ -81,7 +81,8 @@ fn every_crate_has_its_floor_and_is_tested_without_a_name() {
 #[test]
 fn the_program_is_known_by_the_sources_that_decide_its_numbers() {
     let build = text("crates/experiments/build.rs");
-    let others = ["source-hash", "recording", "pictures", "exports", "store", "reports", "xtask", "usar"];
+    let others =
+        ["source-hash", "mrta", "recording", "pictures", "exports", "store", "reports", "xtask", "usar"];
     let with_own_hashes = ["policies", "programs"];
     let known = |name: &&String| with_own_hashes.contains(&name.as_str());
     for name in crates().iter().filter(|name| !known(name) && !others.contains(&name.as_str())) {

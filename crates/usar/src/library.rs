@@ -60,7 +60,6 @@ pub(crate) fn scenarios() -> impl Iterator<Item = (&'static str, &'static str)> 
 ///
 /// # Errors
 /// None: parsers of arguments may fail.
-#[expect(clippy::unnecessary_wraps, reason = "clap takes parsers that may fail")]
 pub fn path(text: &str) -> Result<PathBuf, Infallible> {
     let path = Path::new(text);
     let carried = if is_file(path) || text.ends_with('/') { None } else { carried(text) };

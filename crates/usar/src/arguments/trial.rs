@@ -24,7 +24,7 @@ pub(crate) struct TrialArguments {
     /// Policy that decides, with its options in brackets [default: the first of the sweep]
     #[arg(long)]
     pub(crate) policy: Option<String>,
-    /// Seed of the trial [default: the first of the sweep]
+    /// Seed of the trial, or of what is generated [default: the first of the sweep]
     #[arg(long, value_parser = one_seed)]
     seed: Option<u64>,
     #[command(flatten)]

@@ -1,5 +1,6 @@
 //! The commands: a file for each verb, in a folder for each noun. The first verbs are of no noun.
 
+mod bench;
 mod check;
 mod cluster;
 mod compare;
@@ -122,6 +123,7 @@ verbs!(Verb {
     Fork: fork::Arguments,
     Oracle: oracle::Arguments,
     Search: search::Arguments,
+    Bench: bench::Arguments,
     Trust: trust::Arguments,
     /// Scenario files: list, draw, lay out, explain
     #[command(subcommand, disable_help_subcommand = true)]

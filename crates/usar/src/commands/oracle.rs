@@ -56,7 +56,7 @@ pub(crate) struct Arguments {
     /// Play to the end of the trial, in which this policy decides the rest [default: to the end of the round]
     #[arg(long, value_name = "POLICY")]
     then: Option<String>,
-    /// Most assignments of a decision to play
+    /// Most assignments of a decision to play, or problems to solve
     #[arg(long, hide_short_help = true, default_value_t = DEFAULT_LIMIT, value_parser = limit())]
     limit: u64,
     /// Assignments to show, from the best on

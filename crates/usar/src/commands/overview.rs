@@ -12,7 +12,7 @@ const GROUPS: [(&str, &str); 5] =
 pub(super) fn text(command: &Command) -> String {
     let about = command.get_about().map_or(String::new(), ToString::to_string);
     let mut text =
-        format!("{about}\n\nUsage: usar COMMAND ...    (-h: how to use COMMAND, --help: all of it)\n\n");
+        format!("{about}\nUsage: usar COMMAND ...    (-h: how to use COMMAND, --help: all of it)\n\n");
     for command in command.get_subcommands() {
         let name = command.get_name();
         let group = GROUPS.iter().find(|(_, first)| *first == name).map_or("", |(group, _)| group);

@@ -3,6 +3,7 @@
 mod place;
 mod support;
 
+mod benched;
 mod bent;
 mod calibrated;
 mod cluster;

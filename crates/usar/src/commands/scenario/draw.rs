@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// Scenario file (RON)
     #[arg(value_parser = library::path)]
     file: PathBuf,
-    /// Seed of the trial [default: the first of the sweep]
+    /// Seed of the trial, or of what is generated [default: the first of the sweep]
     #[arg(long, value_parser = one_seed)]
     seed: Option<u64>,
     #[command(flatten)]

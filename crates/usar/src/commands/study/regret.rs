@@ -44,7 +44,7 @@ pub(crate) struct Arguments {
     /// Rounds to play, separated by commas [default: all]
     #[arg(long, value_delimiter = ',')]
     rounds: Vec<u32>,
-    /// Most assignments of a decision to play
+    /// Most assignments of a decision to play, or problems to solve
     #[arg(long, hide_short_help = true, default_value_t = DEFAULT_LIMIT, value_parser = limit())]
     limit: u64,
     /// Metric, e.g. `rescuees.total`; can be given several times [default: `rescuees`, `rescue_rate` and

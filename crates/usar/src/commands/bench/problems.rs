@@ -1,0 +1,40 @@
+//! Problems from files, and made ones.
+
+use mrta::{Problem, generate};
+
+use crate::prelude::*;
+
+/// Reads a problem, or all of a folder in the order of their names. The error has all that is wrong with all.
+pub(super) fn read(path: &Path, limit: usize) -> Result<Vec<Problem>, Failure> {
+    let files = if path.is_dir() { files(path)? } else { vec![path.to_owned()] };
+    let mut problems = Vec::new();
+    let mut wrong = Vec::new();
+    for file in files.iter().take(limit) {
+        let name = file.display().to_string();
+        let text = std::fs::read_to_string(file).map_err(Failure::input_at(&name))?;
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        match mrta::read(&stem, &text) {
+            Ok(problem) => problems.push(problem),
+            Err(error) => wrong.extend(error.to_string().lines().map(|line| format!("{name}: {line}"))),
+        }
+    }
+    if wrong.is_empty() { Ok(problems) } else { Err(Failure::input(wrong.join("\n"))) }
+}
+
+fn files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let entries = std::fs::read_dir(folder).map_err(Failure::input_at(folder.display()))?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut files: Vec<PathBuf> =
+        paths.filter(|path| path.extension().is_some_and(|kind| kind == "json")).collect();
+    files.sort();
+    if files.is_empty() {
+        refuse!("{}: must have problems (.json), found none", folder.display());
+    }
+    Ok(files)
+}
+
+/// Problems of the published form, with the seeds from `seed` on.
+pub(super) fn generated(count: u32, seed: u64) -> impl Iterator<Item = Problem> {
+    (0..count)
+        .map(move |number| generate(&format!("generated_{number:06}"), seed.wrapping_add(u64::from(number))))
+}
