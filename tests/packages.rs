@@ -76,6 +76,20 @@ fn other_workspaces_have_the_versions_of_the_command() {
     assert!(python.len() == 8 && python.iter().all(belongs), "{python:?}");
 }
 
+/// Otherwise libraries would be compiled once more for the Python package.
+#[test]
+fn the_python_package_has_the_release_profile_of_the_command() {
+    let profile = |file: &str| {
+        let text = text(file);
+        let sections = text.split("\n[").filter(|section| section.starts_with("profile.release"));
+        let lines = sections.flat_map(str::lines).map(str::trim).filter(|line| !line.starts_with('#'));
+        let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("frozen-physics"));
+        lines.map(str::to_owned).collect::<Vec<String>>()
+    };
+    assert_eq!(profile("python/Cargo.toml"), profile("Cargo.toml"));
+    assert!(profile("Cargo.toml").len() > 20);
+}
+
 #[test]
 fn only_the_door_of_the_page_is_unsafe() {
     for file in std::fs::read_dir(root().join("lab/src")).unwrap() {

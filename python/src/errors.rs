@@ -1,18 +1,26 @@
 //! What is raised in Python.
 
 use experiments::Failure;
+use experiments::experiment::SweepFileError;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use usar_sim::scenario::{Problem, Problems, ScenarioError as Unusable};
+use usar_sim::scenario::{Location, ScenarioError as Unusable};
 
-pyo3::create_exception!(usar, ScenarioError, PyValueError, "A scenario that cannot be used.");
+pyo3::create_exception!(usar, ScenarioError, PyValueError, "A scenario or a sweep file that cannot be used.");
 pyo3::create_exception!(usar, PolicyError, PyRuntimeError, "A policy that did not answer a question.");
 
 /// Raises a failure of the laboratory as the exception of its kind.
-pub fn raised(failure: Failure) -> PyErr {
+pub fn raised(py: Python<'_>, failure: Failure) -> PyErr {
     let message = failure.to_string();
     match failure {
-        Failure::Input(_) => PyValueError::new_err(message),
+        Failure::Input(cause) => {
+            let scenario = cause.downcast_ref().map(Unusable::place);
+            let sweep = || cause.downcast_ref().and_then(SweepFileError::place).cloned();
+            match scenario.or_else(sweep) {
+                Some(place) => at(py, message, place),
+                None => PyValueError::new_err(message),
+            }
+        }
         Failure::Run(_) => PyRuntimeError::new_err(message),
         Failure::Storage(_) | Failure::ClosedOutput => PyOSError::new_err(message),
         Failure::Interrupted(_) => PyKeyboardInterrupt::new_err(message),
@@ -20,16 +28,11 @@ pub fn raised(failure: Failure) -> PyErr {
 }
 
 /// Raises what is wrong with a scenario, with the file, line and field of the first problem.
-pub fn unusable(py: Python<'_>, error: Unusable) -> PyErr {
-    let message = error.to_string();
-    let (file, line, field) = match error {
-        Unusable::Unreadable { path, .. } => (path, None, None),
-        Unusable::Malformed { path, source } => (path, Some(source.line), None),
-        Unusable::Invalid(Problems { path, list }) => match list.into_iter().next() {
-            Some(Problem { file, line, field, .. }) => (file.unwrap_or(path), line, Some(field)),
-            None => (path, None, None),
-        },
-    };
+pub fn unusable(py: Python<'_>, error: &Unusable) -> PyErr {
+    at(py, error.to_string(), error.place())
+}
+
+fn at(py: Python<'_>, message: String, Location { file, line, field }: Location) -> PyErr {
     let raised = ScenarioError::new_err(message);
     let value = raised.value(py);
     let set = value.setattr("file", file.display().to_string()).and_then(|()| value.setattr("line", line));

@@ -1,27 +1,19 @@
 //! Policies written in Python.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use experiments::experiment::{PolicySpec, with_oracle};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use rne_core::{
-    Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Registry, Session, TrialStart,
+    Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Question, Registry, Session,
+    TrialStart,
 };
 
 use crate::answer::{asked, groups};
 use crate::errors::{raised, unanswered};
-
-/// Ends the programs of policies in other languages. Each of them is ended with its trial as well.
-static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
-
-/// The policies that need no Python.
-static BUILT_IN: LazyLock<Registry> = LazyLock::new(|| {
-    let mut registry = with_oracle(policies::standard());
-    let _ = registry.add(programs::kind(&STOP, || ())); // its name is not taken
-    registry
-});
+use crate::waiting::{Call, Caller};
 
 /// A policy as Python hands it over: as on the command line, or an object of `usar._policies.Own`.
 #[derive(FromPyObject)]
@@ -84,9 +76,11 @@ pub struct Policies {
 }
 
 impl Policies {
-    /// Takes the policies of a call. An exception of one of them sets `stop`.
-    pub fn of(given: Vec<Given>, stop: &Arc<AtomicBool>) -> PyResult<Self> {
-        let mut registry = BUILT_IN.clone();
+    /// Takes the policies of a call. An exception of one of them ends its work.
+    pub fn of(given: Vec<Given>, call: &Call) -> PyResult<Self> {
+        let mut registry = with_oracle(policies::standard());
+        let taken = |error: rne_core::RegistryError| PyValueError::new_err(error.to_string());
+        registry.add(programs::kind(&call.stop, || ())).map_err(taken)?;
         let raised = Raised::default();
         let mut written = Vec::new();
         for policy in given {
@@ -95,15 +89,16 @@ impl Policies {
                 Given::Own { name, decide, fingerprint, deterministic } => {
                     let own = Own {
                         name: name.clone(),
-                        decide,
+                        decide: Arc::new(decide),
                         fingerprint,
                         is_deterministic: deterministic,
                         raised: raised.clone(),
-                        stop: Arc::clone(stop),
+                        stop: Arc::clone(&call.stop),
+                        caller: call.caller.clone(),
                     };
                     let driver: Arc<dyn Driver> = Arc::new(Handle(Arc::new(own)));
                     let kind = PolicyKind::without_options(&name, "a policy in Python", driver);
-                    registry.add(kind).map_err(|error| PyValueError::new_err(error.to_string()))?;
+                    registry.add(kind).map_err(taken)?;
                     written.push(name);
                 }
             }
@@ -112,28 +107,31 @@ impl Policies {
     }
 
     /// The only policy.
-    pub fn spec(&self) -> PyResult<PolicySpec> {
+    pub fn spec(&self, py: Python<'_>) -> PyResult<PolicySpec> {
         let text = self.written.first().map_or("", String::as_str);
-        PolicySpec::parse(text, &self.registry).map_err(raised)
+        PolicySpec::parse(text, &self.registry).map_err(|failure| raised(py, failure))
     }
 }
 
 /// A policy in Python.
 struct Own {
     name: String,
-    decide: Py<PyAny>,
+    decide: Arc<Py<PyAny>>,
     fingerprint: String,
     is_deterministic: bool,
     raised: Raised,
     stop: Arc<AtomicBool>,
+    caller: Caller,
 }
 
 impl Own {
-    fn ask(&self, question: &rne_core::Question) -> PyResult<Assignment> {
-        Python::attach(|py| {
-            let answer = self.decide.bind(py).call1((asked(py, question)?,))?;
+    /// What it answers; `None` once the call is ending.
+    fn ask(&self, question: &Question) -> Option<PyResult<Assignment>> {
+        let (decide, question) = (Arc::clone(&self.decide), question.clone());
+        self.caller.ask(move |py| {
+            let answer = decide.bind(py).call1((asked(py, &question)?,))?;
             let assignment = groups(&answer)?;
-            let checked = assignment.check(question);
+            let checked = assignment.check(&question);
             checked.map_err(|error| PyValueError::new_err(error.to_string())).map(|()| assignment)
         })
     }
@@ -168,7 +166,8 @@ impl Session for OwnSession {
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
         let Own { name, raised, stop, .. } = &*self.policy;
-        self.policy.ask(asked.question).map(Decision::of).map_err(|error| {
+        let answer = self.policy.ask(asked.question).ok_or(PolicyError::Late)?;
+        answer.map(Decision::of).map_err(|error| {
             let told = PolicyError::Other(error.to_string());
             let (policy, round) = (name.clone(), asked.question.round);
             let raise = Raise { error, policy, seed: self.seed, round };

@@ -29,7 +29,7 @@ impl Scenario {
     /// Read and check a file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let (it, _) = Checked::load(&path).map_err(|error| unusable(py, error))?;
+        let (it, _) = Checked::load(&path).map_err(|error| unusable(py, &error))?;
         Ok(Self { it, path })
     }
 
@@ -37,7 +37,7 @@ impl Scenario {
     #[staticmethod]
     #[pyo3(signature = (text, path=PathBuf::from("<text>")), text_signature = "(text, path='<text>')")]
     fn from_str(py: Python<'_>, text: &str, path: PathBuf) -> PyResult<Self> {
-        let it = Checked::parse(text, &path).map_err(|error| unusable(py, error))?;
+        let it = Checked::parse(text, &path).map_err(|error| unusable(py, &error))?;
         Ok(Self { it, path })
     }
 
@@ -58,7 +58,8 @@ impl Scenario {
     #[pyo3(signature = (**paths))]
     fn set(&self, py: Python<'_>, paths: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let mut file: ScenarioFile = (*self.it).clone();
-        let invalid = |list| unusable(py, ScenarioError::Invalid(Problems { path: self.path.clone(), list }));
+        let invalid =
+            |list| unusable(py, &ScenarioError::Invalid(Problems { path: self.path.clone(), list }));
         for (path, value) in paths.into_iter().flatten() {
             let (path, value): (String, String) = (path.extract()?, ron(&value)?);
             file.set(&path, &value).map_err(|problem| invalid(vec![*problem]))?;

@@ -20,7 +20,7 @@ use crate::answer::asked;
 use crate::arrays::{array, points, vectors};
 use crate::scenario::Scenario;
 use crate::trial::{recorded, to_its_end};
-use crate::waiting::wait_for;
+use crate::waiting::Call;
 
 /// How long steps are done before signals are looked at.
 const PERIOD: Duration = Duration::from_millis(50);
@@ -110,7 +110,8 @@ impl Simulation {
         };
         let objective = Objective::parse(metric, &task_names(self.it.scenario()));
         let objective = objective.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        let (start, stop) = (self.it.checkpoint(), Arc::new(AtomicBool::new(false)));
+        let call = Call::new();
+        let (start, stop) = (self.it.checkpoint(), Arc::clone(&call.stop));
         let one = |assignment: &Assignment| {
             let onwards = None::<&mut Box<dyn Session>>;
             play(&start, Decision::of(assignment.clone()), onwards, Deadline::when(&stop))
@@ -121,7 +122,7 @@ impl Simulation {
                 pool.install(|| batch.par_iter().map(one).collect::<Result<Vec<_>, BranchError>>())
             })
         };
-        let played = wait_for(py, &stop, |_| Ok(()), work)?;
+        let played = call.wait_for(py, |_| Ok(()), work)?;
         let played = played.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         let ranked = played.ranked(&objective).into_iter();
         Ok(ranked.map(|one| (one.assignment.groups.clone(), objective.value(&one.outcome))).collect())
@@ -280,11 +281,12 @@ pub fn advance_all(
     threads: usize,
 ) -> PyResult<()> {
     let pool = pool(threads)?;
-    let stop = AtomicBool::new(false);
+    let call = Call::new();
+    let stop = Arc::clone(&call.stop);
     let mut trials: Vec<&mut Trial> = trials.iter_mut().map(|trial| &mut trial.it).collect();
     let work =
         || pool.install(|| trials.par_iter_mut().for_each(|trial| Simulation::to_question(trial, &stop)));
-    wait_for(py, &stop, |_| Ok(()), work)
+    call.wait_for(py, |_| Ok(()), work)
 }
 
 /// Threads of one call; 0 for one on each core. They do not outlive it, so that a process may fork.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use crate::errors::raised;
 use crate::policy::{Given, Policies};
 use crate::scenario::Scenario;
-use crate::waiting::wait_for;
+use crate::waiting::Call;
 
 /// What is run.
 #[derive(FromPyObject)]
@@ -41,23 +41,21 @@ pub fn sweep(
     jobs: Option<usize>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<()> {
-    let stop = Arc::new(AtomicBool::new(false));
+    let call = Call::new();
+    let stop = Arc::clone(&call.stop);
     let has_policies = policies.is_some();
-    let policies = Policies::of(policies.unwrap_or_default(), &stop)?;
+    let policies = Policies::of(policies.unwrap_or_default(), &call)?;
     let written = has_policies.then(|| policies.written.clone());
     let overrides =
         Overrides { policies: written, trials, first_seed, set: settings, ..Overrides::default() };
-    let experiment = match &file {
+    let (path, text) = match file {
         File::Path(path) => {
-            let named = usar::scenario_path(&path.to_string_lossy()).unwrap_or_else(|never| match never {});
-            Experiment::load(&named, &overrides, &policies.registry)
+            (usar::scenario_path(&path.to_string_lossy()).unwrap_or_else(|never| match never {}), None)
         }
         File::Scenario(scenario) => {
-            let path = PathBuf::from(format!("{}.ron", scenario.it.name));
-            Experiment::parse(scenario.it.resolved(), &path, &overrides, &policies.registry)
+            (PathBuf::from(format!("{}.ron", scenario.it.name)), Some(scenario.it.resolved()))
         }
     };
-    let experiment = experiment.map_err(raised)?;
     let (done, all) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let tell = |py: Python<'_>| {
         let [done, all] = [&done, &all].map(|count| count.load(Ordering::Relaxed));
@@ -65,6 +63,11 @@ pub fn sweep(
     };
     let jobs = jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
     let work = || -> Result<(), Failure> {
+        let registry = &policies.registry;
+        let experiment = match text {
+            None => Experiment::load(&path, &overrides, registry)?,
+            Some(text) => Experiment::parse(text, &path, &overrides, registry)?,
+        };
         experiment.check(false)?;
         experiment.check_start(&out)?;
         let mut folder = Folder::open(&out, Arc::new(experiment), Opening::default(), &mut |_| ())?;
@@ -78,8 +81,8 @@ pub fn sweep(
         })?;
         folder.finish(&stop)
     };
-    let ran = wait_for(py, &stop, tell, work);
+    let ran = call.wait_for(py, tell, work);
     policies.raised.check(py)?;
-    ran?.map_err(raised)?;
+    ran?.map_err(|failure| raised(py, failure))?;
     tell(py)
 }

@@ -1,7 +1,7 @@
 //! Single trials and single questions.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering;
 
 use experiments::experiment::PolicySpec;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -14,7 +14,7 @@ use usar_sim::simulation::Simulation as Trial;
 use crate::errors::{raised, unanswered};
 use crate::policy::{Given, Policies, given};
 use crate::scenario::Scenario;
-use crate::waiting::wait_for;
+use crate::waiting::Call;
 
 /// Run one trial to its end.
 ///
@@ -40,23 +40,24 @@ pub fn to_its_end<'py>(
     mut trial: Trial,
     policy: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let policies = Policies::of(vec![given_or_rne(policy)?], &stop)?;
-    let spec = policies.spec()?;
-    spec.check_allowed(trial.given()).map_err(raised)?;
-    let mut session = session_of(py, &spec, &trial)?;
-    let trial_name = trial.given().name.clone();
+    let call = Call::new();
+    let policies = Policies::of(vec![given_or_rne(policy)?], &call)?;
+    let spec = policies.spec(py)?;
+    spec.check_allowed(trial.given()).map_err(|failure| raised(py, failure))?;
+    let (name, seed, stop) = (trial.given().name.clone(), trial.seed(), Arc::clone(&call.stop));
     let run = || {
+        let mut session = session_of(&spec, &trial)?;
         while trial.step_within(&mut *session, Deadline::when(&stop)).is_none() {
-            if stop.load(std::sync::atomic::Ordering::Relaxed) {
+            if stop.load(Ordering::Relaxed) {
                 break;
             }
         }
-        trial.finish()
+        Ok(trial.finish())
     };
-    let record = wait_for(py, &stop, |_| Ok(()), run)?;
+    let ran = call.wait_for(py, |_| Ok(()), run)?;
     policies.raised.check(py)?;
-    recorded(py, &record, &trial_name, &spec.label)
+    let record = ran.map_err(|error| failed(py, &spec, [Some(seed), None], &error))?;
+    recorded(py, &record, &name, &spec.label)
 }
 
 /// The policy of a call; without one, RNE.
@@ -65,20 +66,13 @@ fn given_or_rne(policy: Option<Bound<'_, PyAny>>) -> PyResult<Given> {
 }
 
 /// A session of a policy for a trial.
-fn session_of(py: Python<'_>, spec: &PolicySpec, trial: &Trial) -> PyResult<Box<dyn Session>> {
+fn session_of(spec: &PolicySpec, trial: &Trial) -> Result<Box<dyn Session>, PolicyError> {
     let start = TrialStart { scenario: &trial.scenario().name, seed: trial.seed() };
-    let opened = spec.made().open().and_then(|mut session| session.reset(&start).map(|()| session));
-    opened.map_err(|error| failed(py, spec, Some(trial.seed()), None, &error))
+    spec.made().open().and_then(|mut session| session.reset(&start).map(|()| session))
 }
 
-fn failed(
-    py: Python<'_>,
-    spec: &PolicySpec,
-    seed: Option<u64>,
-    round: Option<u64>,
-    error: &PolicyError,
-) -> PyErr {
-    unanswered(py, format!("policy {}: {error}", spec.label), [seed, round], &spec.label)
+fn failed(py: Python<'_>, spec: &PolicySpec, trial: [Option<u64>; 2], error: &PolicyError) -> PyErr {
+    unanswered(py, format!("policy {}: {error}", spec.label), trial, &spec.label)
 }
 
 /// A `usar.Record`. A trial that failed has none.
@@ -91,7 +85,10 @@ pub fn recorded<'py>(
     if let Status::Failed(reason) = &record.status {
         let message = format!("trial of {policy} with seed {} failed: {reason}", record.seed);
         return Err(match reason.strip_prefix("the policy failed: ") {
-            Some(_) => unanswered(py, message, [Some(record.seed), None], policy),
+            Some(_) => {
+                let round = record.decisions.len() as u64 + 1;
+                unanswered(py, message, [Some(record.seed), Some(round)], policy)
+            }
             None => PyRuntimeError::new_err(message),
         });
     }
@@ -112,13 +109,13 @@ pub fn group(question: &Bound<'_, PyAny>, policy: Option<Bound<'_, PyAny>>) -> P
     let py = question.py();
     let question: Question = depythonize(question)?;
     let question = question.checked().map_err(|error| PyValueError::new_err(error.to_string()))?;
-    let stop = Arc::new(AtomicBool::new(false));
-    let policies = Policies::of(vec![given_or_rne(policy)?], &stop)?;
-    let spec = policies.spec()?;
-    let decision = py.detach(|| spec.made().decide(&question));
+    let call = Call::new();
+    let policies = Policies::of(vec![given_or_rne(policy)?], &call)?;
+    let spec = policies.spec(py)?;
+    let decision = call.wait_for(py, |_| Ok(()), || spec.made().decide(&question))?;
     policies.raised.check(py)?;
-    let round = Some(question.round.into());
-    let decision = decision.map_err(|error| failed(py, &spec, None, round, &error))?;
+    let round = [None, Some(question.round.into())];
+    let decision = decision.map_err(|error| failed(py, &spec, round, &error))?;
     let answer = decision.assignment;
     let answer =
         if answer.idle.is_empty() { pythonize(py, &answer.groups)? } else { pythonize(py, &answer)? };

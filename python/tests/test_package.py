@@ -8,6 +8,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 from types import ModuleType
@@ -45,7 +46,8 @@ def test_every_policy_has_the_hashes_and_decisions_of_the_command(
         theirs = (tmp_path / "command" / f"{table}.csv").read_bytes()
         assert (ours.path / f"{table}.csv").read_bytes() == theirs, table
     scenario = usar.Scenario.builtin(name).set(duration_s=150)
-    rows = list(csv.DictReader((tmp_path / "command" / "trials.csv").open()))
+    with (tmp_path / "command" / "trials.csv").open() as file:
+        rows = list(csv.DictReader(file))
     assert len(rows) == 140
     for row in rows[::9]:
         assert usar.run(scenario, row["policy"], int(row["seed"])).state_hash == row["state_hash"]
@@ -105,6 +107,16 @@ def test_a_scenario_that_cannot_be_used_says_where(tmp_path: Path) -> None:
         usar.Scenario.builtin("paper").set(duration=3)
     with pytest.raises(usar.ScenarioError):
         usar.Scenario.load(tmp_path / "absent.ron")
+    with pytest.raises(usar.ScenarioError, match="duration_s must be") as raised:
+        usar.sweep(path, ["DIS"], 1)
+    assert (raised.value.file, raised.value.line, raised.value.field) == (str(path), 3, "duration_s")
+    with pytest.raises(usar.ScenarioError, match="did you mean"):
+        usar.sweep(usar.Scenario.builtin("paper"), ["DIS"], 1, set={"duration": 3})
+    file = tmp_path / "mine.sweep.ron"
+    file.write_text('(\n  name: "mine",\n  scenario: "usar:/paper.ron",\n  policies: ["RNF"],\n)')
+    with pytest.raises(usar.ScenarioError, match="unknown policy") as raised:
+        usar.sweep(file)
+    assert (raised.value.file, raised.value.line, raised.value.field) == (str(file), 4, "policies[0]")
 
 
 @pytest.mark.parametrize(
@@ -133,6 +145,17 @@ def test_a_policy_that_does_not_answer_says_why(
     assert cause is not ZeroDivisionError or raised.value.__cause__.__traceback__ is not None
     with pytest.raises(usar.PolicyError, match=message):
         usar.sweep(short, [mine], 2, progress=False)
+
+
+def test_no_carrier_is_sent_out(short: usar.Scenario) -> None:
+    def scout(question: Any) -> Any:
+        ids = [member["id"] for member in question["members"]]
+        return {"groups": [ids[-1:], []], "idle": ids[:-1]}
+
+    may = short.set(**{"mission.may_idle": True, "mission.group_sizes": "Free"})
+    with pytest.raises(usar.PolicyError, match="must send out a robot that can carry") as raised:
+        usar.run(may, scout, seed=2)
+    assert (raised.value.policy, raised.value.seed, raised.value.round) == ("scout", 2, 1)
 
 
 def test_a_sweep_goes_on_where_a_policy_raised(tmp_path: Path, short: usar.Scenario) -> None:
@@ -264,6 +287,53 @@ def test_ctrl_c_ends_a_sweep_that_goes_on_later(tmp_path: Path) -> None:
     assert 0 < counts[0] < 600 and counts[-1] == 600
 
 
+AT_WORK = """
+import sys, time, usar
+def slow(question):
+    print("begins", flush=True)
+    while True: {work}
+paper = usar.Scenario.builtin("paper")
+{call}
+"""
+
+
+@pytest.mark.parametrize("work", ["pass", "time.sleep(60)"])
+@pytest.mark.parametrize(
+    "call",
+    [
+        "usar.run(paper, slow)",
+        "usar.sweep(paper, [slow, 'DIS'], 4, jobs=2, progress=False)",
+        "usar.group(usar.Simulation(paper).until_asked(), slow)",
+        "usar.group(usar.Simulation(paper).until_asked(), 'EXEC(command: [\"sh\", \"-c\", \"echo begins >&3; sleep 60\"])')",
+    ],
+)
+def test_ctrl_c_ends_a_policy_at_work(call: str, work: str) -> None:
+    words = ["sh", "-c", 'exec "$0" "$@" 3>&1', sys.executable, "-c", AT_WORK.format(work=work, call=call)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None and process.stdout.readline() == "begins\n"
+        time.sleep(0.2)
+        process.send_signal(signal.SIGINT)
+        begun = time.monotonic()
+        _, told = process.communicate(timeout=20)
+        took = time.monotonic() - begun
+    assert told.rstrip().endswith("KeyboardInterrupt"), told
+    print(f"{took:.2f} s from Ctrl-C to the end of the process")
+    assert took < 5, "it was waited for"
+
+
+def test_policies_answer_on_the_thread_that_called(short: usar.Scenario) -> None:
+    threads = set()
+
+    def mine(question: Any) -> Any:
+        threads.add(threading.get_ident())
+        return usar.group(question, eng)  # a call within a call
+
+    results = usar.sweep(short, [mine, "ENG"], 4, jobs=2, progress=False, frames="lists")
+    assert threads == {threading.get_ident()}
+    hashes = [row["state_hash"] for row in results.trials]
+    assert hashes[:4] == hashes[4:]
+
+
 def test_a_decision_is_cheap(short: usar.Scenario, capsys: pytest.CaptureFixture[str]) -> None:
     trial = usar.Simulation(usar.Scenario.builtin("paper"), 1)
     trial.until_asked()
@@ -285,5 +355,8 @@ def test_results_are_compared_and_reported(tmp_path: Path, short: usar.Scenario)
         usar.compare(results, metrics=["nonsense"])
     with pytest.raises(FileNotFoundError, match="no folder of results"):
         usar.Results(tmp_path)
+    frames = [usar.Results(results.path, kind).trials for kind in ("pandas", "polars")]
     rows = usar.Results(results.path, "lists").trials
-    assert [row["rescuees_total"] for row in rows] == list(results.trials.rescuees_total)
+    for name in ("rescuees_total", "state_hash"):
+        values = [row[name] for row in rows]
+        assert [list(frame[name]) for frame in frames] == [values, values]

@@ -146,12 +146,12 @@ impl InputTable {
         if problems.len() > MOST_PROBLEMS {
             lines.push(format!("{}: has {} more problems", self.file, problems.len() - MOST_PROBLEMS));
         }
-        Failure::Input(lines.join("\n"))
+        Failure::input(lines.join("\n"))
     }
 
     /// The failure of a table with one problem.
     pub fn refused_at(&self, line: usize, problem: impl Display) -> Failure {
-        Failure::Input(format!("{}:{line}: {problem}", self.file))
+        Failure::input(format!("{}:{line}: {problem}", self.file))
     }
 }
 
@@ -204,7 +204,7 @@ impl InputTable {
 fn unreadable(path: &Path, error: &ReadError) -> Failure {
     let hint =
         if matches!(error, ReadError::NotText(_)) { "; spreadsheets save it as CSV UTF-8" } else { "" };
-    Failure::Input(format!("{}: {error}{hint}", path.display()))
+    Failure::input(format!("{}: {error}{hint}", path.display()))
 }
 
 /// The number in a cell with one decimal comma.

@@ -10,7 +10,7 @@ use thiserror::Error;
 pub enum Failure {
     /// The input cannot be used. Nothing was written.
     #[error("{0}")]
-    Input(String),
+    Input(Box<dyn std::error::Error + Send + Sync>),
     /// The run failed.
     #[error("{0}")]
     Run(String),
@@ -27,13 +27,13 @@ pub enum Failure {
 
 impl Failure {
     /// A failure because of bad input.
-    pub fn input(message: impl std::fmt::Display) -> Self {
-        Self::Input(message.to_string())
+    pub fn input(cause: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self::Input(cause.into())
     }
 
     /// Makes the failure of an option or a file from what is wrong with it.
     pub fn input_at<E: std::fmt::Display>(place: impl std::fmt::Display) -> impl Fn(E) -> Self {
-        move |error| Self::Input(format!("{place}: {error}"))
+        move |error| Self::input(format!("{place}: {error}"))
     }
 
     /// A failure of a disk or folder.
@@ -51,7 +51,7 @@ impl Failure {
 #[macro_export]
 macro_rules! refuse {
     ($($message:tt)+) => {
-        return Err($crate::Failure::Input(format!($($message)+)))
+        return Err($crate::Failure::input(format!($($message)+)))
     };
 }
 

@@ -95,10 +95,9 @@ def sweep(
     `file` is a scenario, the path of a scenario or a sweep file, or the name of one that the package has.
     `policies` is a list, or a dict from names in tables to policies; without it, those of the file. With
     `out`, finished trials stay there, and the same call goes on where it was interrupted or a policy
-    raised an exception; without it, they last as long as the results. `jobs` is the number of threads; a
-    policy in Python holds them up, because only one of them runs Python at a time. `progress` prints a
-    line on stderr, or is called with the numbers of trials that are done and that there are. Threads share a
-    policy in Python.
+    raised an exception; without it, they last as long as the results. `jobs` is the number of threads that
+    run trials; a policy in Python answers all of them on the thread that called `sweep`. `progress` prints a
+    line on stderr, or is called with the numbers of trials that are done and that there are.
 
     >>> import usar
     >>> def by_id(question):
@@ -115,6 +114,8 @@ def sweep(
     kept = None if out is not None else tempfile.mkdtemp(prefix="usar-")
     path = Path(out or kept or "") / ("results" if out is None else "")
     tell = _Line() if progress is True else progress or None
+    if isinstance(file, _usar.Scenario):
+        file, set = file.set(**(set or {})), None
     settings = [f"{field}={_usar.ron(value)}" for field, value in (set or {}).items()]
     listed = None if policies is None else _listed(policies)
     try:

@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, final
 
 import numpy
 import numpy.typing
@@ -11,6 +11,20 @@ import numpy.typing
 from ._policies import Own
 from ._records import Record
 from ._types import Answer, Groups, Policy, Question
+
+__all__ = [
+    "PolicyError",
+    "Scenario",
+    "ScenarioError",
+    "Simulation",
+    "advance_all",
+    "command",
+    "group",
+    "rne",
+    "ron",
+    "run",
+    "sweep",
+]
 
 class ScenarioError(ValueError):
     file: str
@@ -22,6 +36,7 @@ class PolicyError(RuntimeError):
     seed: Optional[int]
     round: Optional[int]
 
+@final
 class Scenario:
     @staticmethod
     def load(path: Union[str, os.PathLike[str]]) -> Scenario: ...
@@ -45,8 +60,9 @@ class Scenario:
     @property
     def text(self) -> str: ...
 
+@final
 class Simulation:
-    def __init__(self, scenario: Scenario, seed: int = 1) -> None: ...
+    def __new__(cls, scenario: Scenario, seed: int = 1) -> Simulation: ...
     def until_asked(self) -> Optional[Question]: ...
     def assign(self, groups: Groups) -> None: ...
     def step(self, n: int = 1) -> int: ...

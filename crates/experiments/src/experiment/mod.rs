@@ -33,6 +33,7 @@ pub use policy::{PolicySpec, split_list, with_oracle};
 pub use program::{Digest, Program};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{NoShard, Place, Shard};
+pub use sweep_file::SweepFileError;
 
 use crate::limits::TRIALS;
 use crate::metric::Catalogue;

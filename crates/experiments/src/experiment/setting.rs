@@ -12,7 +12,7 @@ use store::Failure;
 pub(super) fn checked(file: ScenarioFile, prefix: &str) -> Result<Scenario, Failure> {
     Scenario::try_from(file).map_err(|problems| {
         let line = |p: &Problem| format!("{prefix}{p}");
-        Failure::Input(problems.iter().map(line).collect::<Vec<_>>().join("\n"))
+        Failure::input(problems.iter().map(line).collect::<Vec<_>>().join("\n"))
     })
 }
 

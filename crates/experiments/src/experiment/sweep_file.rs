@@ -1,14 +1,16 @@
 //! Reads a sweep file as parts of an experiment. All its problems are told at once, each with its line.
 
 use std::collections::BTreeSet;
-use std::fmt::Display;
+use std::error::Error;
+use std::fmt::{self, Display};
+use std::mem;
 use std::path::Path;
 
 use rne_core::Registry;
 use ron_tree::limits::Limit;
 use ron_tree::{Node, nearest};
 use usar_sim::scenario::{
-    FORMAT, NOT_MISTAKEN, Scenario, ScenarioFile, beside, is_mistaken, parse_ron, parse_tree,
+    FORMAT, Location, NOT_MISTAKEN, Scenario, ScenarioFile, beside, is_mistaken, parse_ron, parse_tree,
 };
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -50,7 +52,7 @@ pub(super) fn from_sweep_file(
     check.policies(&policies, file.baseline.as_deref(), !readings.is_empty());
     let seeds = check.seeds(&file);
     check.must_be_sound()?;
-    let base = base.ok_or_else(|| Failure::input(path.display()))?; // without one there is a problem
+    let base = base.ok_or_else(|| Failure::input(path.display().to_string()))?; // without one there is a problem
     let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
     let parts = Parts {
         name: file.name.clone(),
@@ -69,21 +71,53 @@ pub(super) fn from_sweep_file(
     Ok((parts, readings))
 }
 
+/// What is wrong with a sweep file, line by line.
+#[derive(Debug)]
+pub struct SweepFileError(Vec<SweepFileProblem>);
+
+#[derive(Debug)]
+struct SweepFileProblem {
+    place: Location,
+    /// The line of the message.
+    text: String,
+}
+
+impl SweepFileError {
+    /// Where the first problem is.
+    pub fn place(&self) -> Option<&Location> {
+        self.0.first().map(|problem| &problem.place)
+    }
+}
+
+impl Display for SweepFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shown: Vec<&str> =
+            self.0.iter().take(MOST_PROBLEMS).map(|problem| problem.text.as_str()).collect();
+        f.write_str(&shown.join("\n"))?;
+        match self.0.len() - shown.len() {
+            0 => Ok(()),
+            more => write!(f, "\nand {more} more"),
+        }
+    }
+}
+
+impl Error for SweepFileError {}
+
 /// The rules of a sweep file, and the problems found so far.
 struct Check<'a> {
     path: &'a Path,
     tree: Node,
     registry: &'a Registry,
-    /// Each problem with its line, 0 where it has none.
-    problems: Vec<(usize, String)>,
+    problems: Vec<SweepFileProblem>,
 }
 
 impl Check<'_> {
     fn fail(&mut self, field: &str, reason: &dyn Display) {
         let line = self.tree.line(field);
-        let place = line.map_or(String::new(), |line| format!(":{line}"));
-        let problem = format!("{}{place}: {field}: {reason}", self.path.display());
-        self.problems.push((line.unwrap_or_default(), problem));
+        let at = line.map_or(String::new(), |line| format!(":{line}"));
+        let text = format!("{}{at}: {field}: {reason}", self.path.display());
+        let place = Location { file: self.path.to_owned(), line, field: Some(field.to_owned()) };
+        self.problems.push(SweepFileProblem { place, text });
     }
 
     /// Takes the value, or notes why there is none.
@@ -91,18 +125,15 @@ impl Check<'_> {
         result.map_err(|reason| self.fail(field, &reason)).ok()
     }
 
-    fn must_be_sound(&self) -> Result<(), Failure> {
+    fn must_be_sound(&mut self) -> Result<(), Failure> {
         if self.problems.is_empty() {
             return Ok(());
         }
-        let mut problems: Vec<&(usize, String)> = self.problems.iter().collect();
-        problems.sort_by_key(|(line, _)| *line);
-        let shown: Vec<&str> = problems.iter().take(MOST_PROBLEMS).map(|(_, text)| text.as_str()).collect();
-        let rest = match problems.len() - shown.len() {
-            0 => String::new(),
-            more => format!("\nand {more} more"),
-        };
-        Err(Failure::Input(format!("{}{rest}", shown.join("\n"))))
+        let mut problems = mem::take(&mut self.problems);
+        let line =
+            |problem: &SweepFileProblem| problem.place.line.filter(|_| problem.place.file == self.path);
+        problems.sort_by_key(line);
+        Err(Failure::input(SweepFileError(problems)))
     }
 
     /// Format, name, and how much there is of everything.
@@ -138,7 +169,8 @@ impl Check<'_> {
         let (base, _) = match Scenario::load(&scenario) {
             Ok(loaded) => loaded,
             Err(error) => {
-                self.problems.push((0, error.of_named(&file.scenario).to_string()));
+                let error = error.of_named(&file.scenario);
+                self.problems.push(SweepFileProblem { place: error.place(), text: error.to_string() });
                 return None;
             }
         };

@@ -28,6 +28,17 @@ impl fmt::Display for Problems {
     }
 }
 
+/// Where something stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Location {
+    /// The file.
+    pub file: PathBuf,
+    /// The line, where it is known.
+    pub line: Option<usize>,
+    /// Path of the field, unless it is about the whole file.
+    pub field: Option<String>,
+}
+
 /// A scenario that cannot be used.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ScenarioError {
@@ -53,6 +64,21 @@ pub enum ScenarioError {
 }
 
 impl ScenarioError {
+    /// Where the first problem is.
+    pub fn place(&self) -> Location {
+        let at = |file: &Path, line, field| Location { file: file.to_owned(), line, field };
+        match self {
+            Self::Unreadable { path, .. } => at(path, None, None),
+            Self::Malformed { path, source } => at(path, Some(source.line), None),
+            Self::Invalid(Problems { path, list }) => match list.first() {
+                Some(Problem { file, line, field, .. }) => {
+                    at(file.as_ref().unwrap_or(path), *line, Some(field.clone()))
+                }
+                None => at(path, None, None),
+            },
+        }
+    }
+
     /// The error of a file that another one names by this path: text of a file outside the folder of the other
     /// is not shown, for it may be none of its reader's business.
     #[must_use]

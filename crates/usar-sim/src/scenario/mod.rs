@@ -41,7 +41,7 @@ pub use carried::{CARRIED, beside, carry, is_file};
 pub use checker::{NOT_MISTAKEN, is_mistaken};
 pub use debris::LEAST_POLYGON_WIDTH_M;
 pub(crate) use deceit::rounded_share;
-pub use error::{LayoutError, Problem, Problems, ScenarioError};
+pub use error::{LayoutError, Location, Problem, Problems, ScenarioError};
 pub use file::*;
 pub use reading::{ReadText, formatted, parse_ron, parse_tree, read_text};
 pub use schema::scenario_schema;

@@ -61,7 +61,7 @@ fn check_each(files: &[PathBuf], check: impl Fn(&Path) -> Result<String, Failure
     let one = |file: &PathBuf| {
         let checked = catch_unwind(AssertUnwindSafe(|| check(file))).unwrap_or_else(|panic| {
             let reason = panic_message(&*panic);
-            Err(Failure::Input(format!("{}: internal error: {reason}", file.display())))
+            Err(Failure::input(format!("{}: internal error: {reason}", file.display())))
         });
         let problems = checked
             .as_ref()
@@ -86,7 +86,7 @@ impl Arguments {
                 told.iter().try_for_each(|told| writeln!(out, "{file}: {told}"))?;
             }
         }
-        if problems.is_empty() { Ok(()) } else { Err(Failure::Input(problems.join("\n"))) }
+        if problems.is_empty() { Ok(()) } else { Err(Failure::input(problems.join("\n"))) }
     }
 }
 

@@ -47,7 +47,7 @@ impl RecordedArguments {
 /// The failure of an export to a path.
 pub(super) fn failed(path: &Path, error: &ExportError) -> Failure {
     match error {
-        ExportError::Recording(_) => Failure::input(error),
+        ExportError::Recording(_) => Failure::input(error.to_string()),
         _ => Failure::storage(format!("{}: {error}", path.display())),
     }
 }
