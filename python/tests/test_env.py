@@ -29,9 +29,11 @@ def test_environments_pass_the_tests_of_their_packages(name: str) -> None:
     check_env(gymnasium.make("usar/Coordinator-v0", scenario=scenario).unwrapped, skip_render_check=True)
 
 
-def test_velocities_pass_the_tests_of_their_package(short: usar.Scenario) -> None:
-    parallel_api_test(usar.env.Velocities(short, hz=2), num_cycles=50)
-    parallel_seed_test(lambda: usar.env.Velocities(short, hz=2), num_cycles=20)
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_velocities_pass_the_tests_of_their_package(name: str) -> None:
+    scenario = usar.Scenario.builtin(name)
+    parallel_api_test(usar.env.Velocities(scenario, hz=2), num_cycles=50)
+    parallel_seed_test(lambda: usar.env.Velocities(scenario, hz=2), num_cycles=20)
 
 
 def test_many_are_the_same_as_each_of_them() -> None:
