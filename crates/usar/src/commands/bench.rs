@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use rne_core::{Asked, Decision, PolicyError, Session, TrialStart};
 
 use crate::arguments::{ProgressArguments, ReplaceArgument, ShownArguments, count, one_seed, parse_policy};
+use crate::output::check_folder;
 use crate::prelude::*;
 use summary::{Method, Solved};
 
@@ -77,7 +78,7 @@ impl Arguments {
         }
         let problems = self.problems()?;
         if let Some(place) = &self.out {
-            make_folder(place, self.replace.force)?;
+            check_folder(place, self.replace.force)?;
         }
         let solved = self.progress.work(problems.len(), "problems", |bar| {
             let solve = |problem: &Problem| {
@@ -105,6 +106,7 @@ impl Arguments {
     }
 
     fn write(&self, place: &Path, problems: &[Problem], solved: &[Solved]) -> Result<(), Failure> {
+        make_folder(place, self.replace.force)?;
         let table = csv_of(summary::rows(solved))?;
         NewFile::write(place, "makespans.csv", &table)?;
         if self.generate.is_some() {

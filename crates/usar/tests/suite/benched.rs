@@ -52,7 +52,7 @@ fn bad_input_is_told_all_at_once_and_nothing_is_written() {
     says("bench . --out out", &["bad.json: T_e[1]", row, circle]);
     says("bench none", &["none: must have problems (.json), found none"]);
     says("bench absent.json", &["absent.json"]);
-    says("bench --generate 1 --policies ENG", &["policy ENG needs the energy level"]);
+    says("bench --generate 1 --policies ENG --out out", &["policy ENG needs the energy level"]);
     says("bench --generate 1 --policies NOBODY", &["--policies", "NOBODY"]);
     says("bench --generate 1 --policies ORACLE", &["ORACLE plays the trial that asks"]);
     assert!(!folder.path().join("out").exists());
