@@ -1,9 +1,10 @@
 //! Task allocation to robots with skills, after MRTA-Benchmark: problems, their exact optimum, and schedules
 //! by rules and by policies.
 //!
-//! All robots begin at one location. A task needs a group whose skills together cover what it requires. It
-//! starts when the last member of its group has arrived and its predecessors are over. In the end each robot
-//! goes to the last location; the makespan is when the last one arrives there.
+//! Each robot begins at a location: all at one, or each at its own. A task needs a group whose skills together
+//! cover what it requires. It starts when the last member of its group has arrived and its predecessors are
+//! over. In the end each robot that had a task goes to its end location; the makespan is when the last robot
+//! arrives there.
 
 mod cbba;
 mod dispatch;
@@ -17,7 +18,7 @@ pub use cbba::cbba;
 pub use dispatch::{DispatchError, dispatch};
 pub use generate::generate;
 pub use optimum::{MAX_ROBOTS, MAX_TASKS, optimum};
-pub use problem::{Problem, Skills, Task};
+pub use problem::{Problem, Robot, Skills, Task};
 pub use read::{BadField, BadProblem, read, write};
 pub use schedule::earliest;
 

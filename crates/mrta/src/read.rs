@@ -10,7 +10,7 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
-use crate::problem::{Problem, Skills, Task};
+use crate::problem::{Problem, Robot, Skills, Task};
 
 /// What is wrong with a field.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -59,9 +59,14 @@ pub fn read(name: &str, text: &str) -> Result<Problem, BadProblem> {
     }
 }
 
-/// Writes a problem as [`read`] reads it.
+/// Writes a problem in the form of MRTA-Benchmark; `None` if not all robots begin at location 0 and end at
+/// the last one, because that form has no other places for them.
 #[must_use]
-pub fn write(problem: &Problem) -> String {
+pub fn write(problem: &Problem) -> Option<String> {
+    let ends = [0, problem.last()];
+    if problem.robots.iter().any(|robot| [robot.start, robot.end] != ends) {
+        return None;
+    }
     let row =
         |skills: &Skills| (0..problem.skills).map(|skill| (skills >> skill) & 1).collect::<Vec<Skills>>();
     let with_ends = |first: Value, tasks: Vec<Value>| -> Vec<Value> {
@@ -72,14 +77,14 @@ pub fn write(problem: &Problem) -> String {
     let pairs = problem.tasks.iter().enumerate();
     let pairs = pairs.flat_map(|(task, of)| of.after.iter().map(move |first| [first + 1, task + 1]));
     let json = json!({
-        "Q": problem.robots.iter().map(row).collect::<Vec<_>>(),
+        "Q": problem.robots.iter().map(|robot| row(&robot.skills)).collect::<Vec<_>>(),
         "R": with_ends(json!(row(&0)), required),
         "T_e": with_ends(json!(0), durations),
         "T_t": problem.travel,
         "task_locations": problem.places,
         "precedence_constraints": pairs.collect::<Vec<_>>(),
     });
-    format!("{json}\n")
+    Some(format!("{json}\n"))
 }
 
 /// A text that is being read, with what is wrong so far.
@@ -138,6 +143,7 @@ impl Reader<'_> {
             after: after[row].iter().map(|first| first - 1).collect(),
         };
         let tasks = (1..count - 1).map(task).collect();
+        let robots = robots.into_iter().map(|skills| Robot { skills, start: 0, end: count - 1 }).collect();
         let travel = if travel.is_empty() { Problem::distances(&places) } else { travel };
         Some(Problem { name: name.to_owned(), skills, robots, tasks, places, travel })
     }

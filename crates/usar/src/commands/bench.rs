@@ -112,8 +112,9 @@ impl Arguments {
         if self.generate.is_some() {
             let folder = place.join("problems");
             std::fs::create_dir_all(&folder)?;
-            for problem in problems {
-                NewFile::write(&folder, &format!("{}.json", problem.name), mrta::write(problem).as_bytes())?;
+            // Made problems have one start and one end, which can be written.
+            for (problem, text) in problems.iter().filter_map(|of| Some((of, mrta::write(of)?))) {
+                NewFile::write(&folder, &format!("{}.json", problem.name), text.as_bytes())?;
             }
         }
         Ok(())
