@@ -1,4 +1,4 @@
-//! Problems as JSON, in the form of MRTA-Benchmark.
+//! Problems as JSON, in the form of MRTA-Benchmark. A text in the form of HeteroMRTA is told by its fields.
 //!
 //! `Q` has a row for each robot and a 0 or 1 for each skill. `R` has a row for each task, in the same way,
 //! and `T_e` how long each takes; the first and the last row are no tasks, but the first and the last
@@ -6,41 +6,13 @@
 //! pairs of rows: the first must be over before the second. `T_t` has the time of travel between all rows;
 //! without it, distance is time.
 
-use std::fmt;
-
 use serde_json::{Value, json};
 
+use crate::fields::{BadProblem, Reader, found};
 use crate::problem::{Problem, Robot, Skills, Task};
 
-/// What is wrong with a field.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BadField {
-    /// The field, such as `R[3]`.
-    pub field: String,
-    /// The rule that it breaks.
-    pub rule: String,
-    /// What was found.
-    pub found: String,
-}
-
-impl fmt::Display for BadField {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: must {}, found {}", self.field, self.rule, self.found)
-    }
-}
-
-/// Why a text is no problem.
-#[derive(Debug, thiserror::Error)]
-pub enum BadProblem {
-    /// It is not JSON.
-    #[error("the text is not JSON: {0}")]
-    Json(#[from] serde_json::Error),
-    /// Fields, all at once.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Fields(Vec<BadField>),
-}
-
-/// Reads a problem.
+/// Reads a problem in the form of MRTA-Benchmark, or in that of HeteroMRTA's `config.json`: that has `robots`
+/// or `tasks` and no `Q`.
 ///
 /// # Errors
 /// A text that is not JSON, or all fields that break a rule.
@@ -52,7 +24,9 @@ pub fn read(name: &str, text: &str) -> Result<Problem, BadProblem> {
         serde_json::from_str(&quoted).map_err(|_| error)
     })?;
     let mut reader = Reader { json: &json, bad: Vec::new() };
-    let problem = reader.problem(name);
+    let is_there = |field: &str| json.get(field).is_some();
+    let is_hetero = !is_there("Q") && (is_there("robots") || is_there("tasks"));
+    let problem = if is_hetero { reader.hetero(name) } else { reader.benchmark(name) };
     match problem {
         Some(problem) if reader.bad.is_empty() => Ok(problem),
         _ => Err(BadProblem::Fields(reader.bad)),
@@ -87,19 +61,9 @@ pub fn write(problem: &Problem) -> Option<String> {
     Some(format!("{json}\n"))
 }
 
-/// A text that is being read, with what is wrong so far.
-struct Reader<'j> {
-    json: &'j Value,
-    bad: Vec<BadField>,
-}
-
 impl Reader<'_> {
-    fn refuse(&mut self, field: impl fmt::Display, rule: impl fmt::Display, found: impl fmt::Display) {
-        let [field, rule, found] = [field.to_string(), rule.to_string(), found.to_string()];
-        self.bad.push(BadField { field, rule, found });
-    }
-
-    fn problem(&mut self, name: &str) -> Option<Problem> {
+    /// A problem in the form of MRTA-Benchmark.
+    fn benchmark(&mut self, name: &str) -> Option<Problem> {
         let robots = self.table("Q")?;
         let (rows, durations) = (self.table("R")?, self.row("T_e")?);
         let skills = robots.first().map_or(0, Vec::len);
@@ -172,13 +136,7 @@ impl Reader<'_> {
             self.refuse(field, "be a list of numbers", row);
             return Vec::new();
         };
-        let mut number = |(at, value): (usize, &Value)| {
-            let number = value.as_f64().filter(|number| number.is_finite());
-            if number.is_none() {
-                self.refuse(format!("{field}[{at}]"), "be a finite number", value);
-            }
-            number.unwrap_or(0.0)
-        };
+        let mut number = |(at, value): (usize, &Value)| self.number(format!("{field}[{at}]"), Some(value));
         row.iter().enumerate().map(&mut number).collect()
     }
 
@@ -257,8 +215,4 @@ impl Reader<'_> {
         }
         Some(travel)
     }
-}
-
-fn found(value: Option<&Value>) -> String {
-    value.map_or("nothing".to_owned(), ToString::to_string)
 }

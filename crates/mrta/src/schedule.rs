@@ -4,6 +4,9 @@ use std::cmp::Reverse;
 
 use crate::problem::{Problem, Skills};
 
+#[cfg(test)]
+mod recorded;
+
 /// Where the robots are and when they are free, and which tasks are covered.
 #[derive(Debug, Clone)]
 pub(crate) struct Schedule<'p> {

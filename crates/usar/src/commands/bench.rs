@@ -22,8 +22,9 @@ use summary::{Method, Solved};
 Robots with skills, tasks that need groups with certain skills for some time, ways, and an order: how much \
 longer does a schedule take than the shortest one? A problem is a JSON file of MRTA-Benchmark: Q (skills \
 of robots), R (skills that tasks require), T_e (how long tasks take), task_locations, \
-precedence_constraints and, if ways take other times than their lengths, T_t. A folder stands for all of \
-its .json files.
+precedence_constraints and, if ways take other times than their lengths, T_t. It may also be a config.json \
+of HeteroMRTA: setup, tasks, and robots that begin and end at their own places. A folder stands for all of \
+its .json files and for the config.json of its subfolders; a config.json has the name of its folder.
 
 Problems of at most 10 tasks and 4 robots are solved exactly. Gaps are in percent of the optimum, or of \
 the best schedule found where a problem is larger. A policy is asked whenever a robot becomes free, over \
@@ -36,7 +37,8 @@ Examples:
   usar bench --generate 1000 --seed 1
   usar bench --generate 100 --policies 'DIS,GREEDY(quality: 0),RNE' --out results/bench
   usar bench 1p_000000.json --policies OPTIMAL --json
-  usar bench MRTA-Benchmark/problems --limit 100 --format csv")]
+  usar bench MRTA-Benchmark/problems --limit 100 --format csv
+  usar bench HeteroMRTA/RALTestSet --policies DIS,GREEDY,RNE")]
 pub(crate) struct Arguments {
     /// Problem (JSON), or a folder of problems
     #[arg(value_name = "FILE|DIR", required_unless_present = "generate", conflicts_with = "generate")]
