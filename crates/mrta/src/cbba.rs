@@ -26,17 +26,15 @@ pub fn cbba(problem: &Problem) -> f64 {
     let plans = agreed(problem);
     let mut planned = vec![(0.0, Vec::new()); problem.tasks.len()];
     for (robot, plan) in plans.iter().enumerate() {
-        for (task, end) in ends(problem, &plan.way) {
+        for (task, end) in ends(problem, robot, &plan.way) {
             planned[task].0 = f64::max(planned[task].0, end);
             planned[task].1.push(robot);
         }
     }
     let mut schedule = Schedule::new(problem);
     loop {
-        let is_planned = |task: &usize| {
-            let skills = planned[*task].1.iter().fold(0, |all, robot| all | problem.robots[*robot]);
-            problem.tasks[*task].requires & !skills == 0
-        };
+        let is_planned =
+            |task: &usize| problem.tasks[*task].requires & !problem.skills_of(&planned[*task].1) == 0;
         let next = schedule.open().filter(is_planned).min_by(|a, b| planned[*a].0.total_cmp(&planned[*b].0));
         let rule = || {
             let teams = schedule.open().filter_map(|task| schedule.team(task, 0.0));
@@ -45,7 +43,7 @@ pub fn cbba(problem: &Problem) -> f64 {
         let planned = next.map(|task| (task, planned[task].1.clone()));
         let Some((task, team)) = planned.or_else(rule) else { return schedule.makespan() };
         for robot in team {
-            if schedule.missing(task) & problem.robots[robot] != 0 {
+            if schedule.missing(task) & problem.robots[robot].skills != 0 {
                 schedule.commit(robot, task, 0.0);
             }
         }
@@ -120,11 +118,11 @@ impl Auction<'_> {
     /// Adds the item with the largest bid that wins. Returns whether there is one.
     fn add(&self, robot: usize, plan: &mut Plan, winners: &[Option<(f64, usize)>]) -> bool {
         let most = plan.bundle.last().map_or(f64::INFINITY, |(_, bid)| *bid);
-        let own = self.score(plan, &plan.way, None);
+        let own = self.score(robot, plan, &plan.way, None);
         let mut best: Option<(f64, usize, Vec<usize>)> = None;
         for (at, item) in self.items.iter().enumerate() {
             let is_held = plan.bundle.iter().any(|(held, _)| *held == at);
-            if is_held || self.problem.robots[robot] & item.skill == 0 {
+            if is_held || self.problem.robots[robot].skills & item.skill == 0 {
                 continue;
             }
             let places = if plan.way.contains(&item.task) { 0..0 } else { 0..plan.way.len() + 1 };
@@ -135,7 +133,7 @@ impl Auction<'_> {
             });
             let ways = inserted.chain(plan.way.contains(&item.task).then(|| plan.way.clone()));
             for way in ways {
-                let bid = (self.score(plan, &way, Some(item.task)) - own).min(most);
+                let bid = (self.score(robot, plan, &way, Some(item.task)) - own).min(most);
                 let wins = winners[at]
                     .is_none_or(|(other, winner)| bid > other + TIE || bid > other - TIE && robot <= winner);
                 if wins && bid > 0.0 && best.as_ref().is_none_or(|(known, ..)| bid > known + TIE) {
@@ -149,21 +147,21 @@ impl Auction<'_> {
         true
     }
 
-    /// The score of a way with the items of a plan, and one more of a task.
-    fn score(&self, plan: &Plan, way: &[usize], more: Option<usize>) -> f64 {
+    /// The score of a robot's way with the items of its plan, and one more of a task.
+    fn score(&self, robot: usize, plan: &Plan, way: &[usize], more: Option<usize>) -> f64 {
         let held =
             |task: usize| plan.bundle.iter().filter(|(item, _)| self.items[*item].task == task).count();
         let worth = |task: usize| (held(task) + usize::from(more == Some(task))) as f64;
-        ends(self.problem, way)
+        ends(self.problem, robot, way)
             .into_iter()
             .map(|(task, end)| worth(task) * libm::exp(-end / self.scale))
             .sum()
     }
 }
 
-/// Each task of a way, with its end if the robot waits for nobody.
-fn ends(problem: &Problem, way: &[usize]) -> Vec<(usize, f64)> {
-    let (mut place, mut now) = (0, 0.0);
+/// Each task of a robot's way, with its end if the robot waits for nobody.
+fn ends(problem: &Problem, robot: usize, way: &[usize]) -> Vec<(usize, f64)> {
+    let (mut place, mut now) = (problem.robots[robot].start, 0.0);
     let end = |task: &usize| {
         now += problem.travel[place][task + 1] + problem.tasks[*task].duration;
         place = task + 1;

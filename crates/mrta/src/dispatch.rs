@@ -6,8 +6,8 @@
 //! which role it gets; the policy says which. Robots are often fewer than such slots. Then a robot stands
 //! in the question once for each turn that it could take, all at the place where it is: what its first turn
 //! gets is what it does now, and the other turns are thrown away. If robots are more than slots, the rest
-//! goes to the task `end` at the last location, and waits where it is. The longer a task and all after it
-//! take, the harder it is.
+//! goes to the task `end`, and waits where it is. `end` is at the centre of the locations where robots end.
+//! The longer a task and all after it take, the harder it is.
 //!
 //! Robots that go to a task are bound to it until it is over. A robot is not bound if this could end with
 //! robots that wait for each other at different tasks. As long as an answer binds robots, the policy is
@@ -99,22 +99,22 @@ impl Turn {
             unbound.partition(|robot| schedule.ready[*robot] <= now);
         let slots = slots(schedule, now);
         let is_asked = |skills: Skills| slots.iter().any(|slot| slot.skills == skills);
-        free.retain(|robot| is_asked(problem.robots[*robot]));
+        free.retain(|robot| is_asked(problem.robots[*robot].skills));
         if free.is_empty() {
             return Ok(None);
         }
         let tasks = listed(schedule, &slots);
-        let mut roles: Vec<Skills> = free.iter().map(|robot| problem.robots[*robot]).collect();
+        let mut roles: Vec<Skills> = free.iter().map(|robot| problem.robots[*robot].skills).collect();
         roles.sort_unstable();
         roles.dedup();
         // For each role its robots, those that are free first.
         let mut rows: Vec<(usize, RoleId)> = Vec::new();
         let mut quotas = Vec::new();
         let of_role = |skills: Skills, robots: &[usize]| -> Vec<usize> {
-            robots.iter().copied().filter(|robot| problem.robots[*robot] == skills).collect()
+            robots.iter().copied().filter(|robot| problem.robots[*robot].skills == skills).collect()
         };
         for robot in &free {
-            let role = roles.iter().position(|skills| *skills == problem.robots[*robot]).unwrap_or(0);
+            let role = roles.iter().position(|skills| *skills == problem.robots[*robot].skills).unwrap_or(0);
             rows.push((*robot, RoleId(role as u16)));
         }
         for (role, skills) in (0..).map(RoleId).zip(&roles) {
@@ -170,7 +170,7 @@ impl Turn {
 
 fn is_useful(schedule: &Schedule, robot: usize, task: usize) -> bool {
     let is_open = schedule.open().any(|open| open == task);
-    is_open && schedule.missing(task) & schedule.problem.robots[robot] != 0
+    is_open && schedule.missing(task) & schedule.problem.robots[robot].skills != 0
 }
 
 /// An open position in the group of a task, for a robot with these skills.
@@ -193,7 +193,7 @@ fn slots(schedule: &Schedule, now: f64) -> Vec<Slot> {
         let slot = |robot: usize| Slot {
             task: team.task,
             start: team.start,
-            skills: schedule.problem.robots[robot],
+            skills: schedule.problem.robots[robot].skills,
         };
         joining.map(slot).collect::<Vec<Slot>>()
     };
@@ -229,15 +229,25 @@ fn asked(problem: &Problem, tasks: &[usize]) -> Vec<Asked> {
             ..Asked::new(&format!("task {}", task + 1), rank(task))
         }
     };
-    let end = Asked { place: Some(problem.places[problem.last()]), ..Asked::new("end", 0) };
+    let end = Asked { place: Some(centre_of_ends(problem)), ..Asked::new("end", 0) };
     tasks.iter().map(of_task).chain([end]).collect()
+}
+
+/// The mean place of the locations where robots end.
+fn centre_of_ends(problem: &Problem) -> [f64; 2] {
+    let mut ends: Vec<usize> = problem.robots.iter().map(|robot| robot.end).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let mean =
+        |axis: usize| ends.iter().map(|end| problem.places[*end][axis]).sum::<f64>() / ends.len() as f64;
+    [mean(0), mean(1)]
 }
 
 /// The rows of robots as members, numbered in this order.
 fn members(schedule: &Schedule, rows: &[(usize, RoleId)]) -> Result<Vec<Member>, NeedsError> {
     let problem = schedule.problem;
     let member = |(id, (robot, role)): (u32, &(usize, RoleId))| {
-        let has = |skill: usize| (problem.robots[*robot] >> skill & 1) as f64;
+        let has = |skill: usize| (problem.robots[*robot].skills >> skill & 1) as f64;
         Ok(Member {
             id,
             role: *role,

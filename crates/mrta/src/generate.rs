@@ -3,7 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-use crate::problem::{Problem, Skills, Task};
+use crate::problem::{Problem, Robot, Skills, Task};
 
 /// Skills, and robots.
 const SKILLS: usize = 3;
@@ -22,7 +22,11 @@ pub fn generate(name: &str, seed: u64) -> Problem {
         1 << first | Skills::from(draws.random_range(0..4) == 0) << other
     };
     let shift = draws.random_range(0..SKILLS);
-    let robots = (0..SKILLS).map(|robot| second(&mut draws, (robot + shift) % SKILLS)).collect();
+    let mut robot = |robot: usize| {
+        let skills = second(&mut draws, (robot + shift) % SKILLS);
+        Robot { skills, start: 0, end: TASKS + 1 }
+    };
+    let robots = (0..SKILLS).map(&mut robot).collect();
     let mut tasks: Vec<Task> = Vec::new();
     for _ in 0..TASKS {
         let first = draws.random_range(0..SKILLS);

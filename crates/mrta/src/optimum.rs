@@ -24,6 +24,9 @@ pub const MAX_ROBOTS: usize = 4;
 /// Bounds that are no more than this below a makespan promise nothing better.
 const TIE: f64 = 1e-9;
 
+/// The place of a robot that has no task yet. Task j is at j + 1.
+const START: u8 = 0;
+
 /// The place of a robot that has nothing left to do.
 const DONE: u8 = u8::MAX;
 
@@ -35,7 +38,8 @@ pub fn optimum(problem: &Problem) -> Option<f64> {
     }
     let search = Search::of(problem);
     let mut best = earliest(problem);
-    let mut level = BTreeMap::from([(Key { covered: 0, places: [0; MAX_ROBOTS] }, vec![Times::default()])]);
+    let mut level =
+        BTreeMap::from([(Key { covered: 0, places: [START; MAX_ROBOTS] }, vec![Times::default()])]);
     for _ in 0..problem.tasks.len() {
         let mut next = BTreeMap::new();
         for (key, states) in &level {
@@ -61,7 +65,7 @@ struct Times {
     ready: [f64; MAX_ROBOTS],
     /// Of tasks that others wait for.
     ends: [f64; MAX_TASKS],
-    /// When the last of the robots that are done is at the last location.
+    /// When the last of the robots that are done is at its end.
     finish: f64,
 }
 
@@ -99,14 +103,16 @@ impl<'p> Search<'p> {
     fn of(problem: &'p Problem) -> Self {
         let robots = problem.robots.len();
         let has = |set: u8, robot: usize| set >> robot & 1 == 1;
-        let skills = |set: u8| (0..robots).filter(|r| has(set, *r)).fold(0, |all, r| all | problem.robots[r]);
+        let skills =
+            |set: u8| problem.skills_of(&(0..robots).filter(|r| has(set, *r)).collect::<Vec<usize>>());
         let groups = |requires: Skills| {
             let covers = |set: u8| requires & !skills(set) == 0;
             let is_least = |set: &u8| !(0..robots).any(|r| has(*set, r) && covers(set & !(1 << r)));
             (1..1_u8 << robots).filter(|set| covers(*set)).filter(is_least).collect()
         };
-        let with =
-            |skill: usize| (0..robots).map(|r| u8::from(problem.robots[r] >> skill & 1 == 1) << r).sum();
+        let with = |skill: usize| {
+            (0..robots).map(|r| u8::from(problem.robots[r].skills >> skill & 1 == 1) << r).sum()
+        };
         let able = |requires: Skills| {
             (0..problem.skills).filter(|skill| requires >> skill & 1 == 1).map(with).collect::<Vec<u8>>()
         };
@@ -121,7 +127,7 @@ impl<'p> Search<'p> {
             problem,
             groups: problem.tasks.iter().map(|task| groups(task.requires)).collect(),
             tails: problem.tails(),
-            tours: own.iter().map(|own| tours(problem, *own, &shortest)).collect(),
+            tours: (0..robots).map(|robot| tours(problem, robot, own[robot], &shortest)).collect(),
             able,
             own,
         }
@@ -157,7 +163,8 @@ impl<'p> Search<'p> {
     fn covered(&self, State { mut key, mut times }: State, task: usize, group: u8) -> State {
         let Problem { tasks, robots, travel, .. } = self.problem;
         let members = || (0..robots.len()).filter(move |robot| group >> robot & 1 == 1);
-        let arrival = |robot: usize| times.ready[robot] + travel[key.places[robot] as usize][task + 1];
+        let from = |robot: usize| location(self.problem, robot, key.places[robot]);
+        let arrival = |robot: usize| times.ready[robot] + travel[from(robot)][task + 1];
         let over = tasks[task].after.iter().map(|first| times.ends[*first]);
         let end = members().map(arrival).chain(over).fold(0.0, f64::max) + tasks[task].duration;
         key.covered |= 1 << task;
@@ -169,10 +176,10 @@ impl<'p> Search<'p> {
                 times.ends[first] = 0.0;
             }
         }
-        for (robot, skills) in robots.iter().enumerate() {
+        for (robot, of) in robots.iter().enumerate() {
             let place = key.places[robot];
-            if place != DONE && !left().any(|task| tasks[task].requires & skills != 0) {
-                let way = if place == 0 { 0.0 } else { travel[place as usize][self.problem.last()] };
+            if place != DONE && !left().any(|task| tasks[task].requires & of.skills != 0) {
+                let way = if place == START { 0.0 } else { travel[place as usize][of.end] };
                 times.finish = times.finish.max(times.ready[robot] + way);
                 (key.places[robot], times.ready[robot]) = (DONE, 0.0);
             }
@@ -186,7 +193,7 @@ impl<'p> Search<'p> {
         let mut bound = times.finish;
         for (robot, tours) in self.tours.iter().enumerate().filter(|(robot, _)| key.places[*robot] != DONE) {
             let left = self.own[robot] & !key.covered;
-            if key.places[robot] != 0 || left != 0 {
+            if key.places[robot] != START || left != 0 {
                 bound = bound.max(times.ready[robot] + tours[key.places[robot] as usize][left as usize]);
             }
         }
@@ -195,8 +202,8 @@ impl<'p> Search<'p> {
             for able in &self.able[task] {
                 let robots = (0..self.problem.robots.len()).filter(|robot| able >> robot & 1 == 1);
                 let robots = robots.filter(|robot| key.places[*robot] != DONE);
-                let arrival =
-                    |robot: usize| times.ready[robot] + travel[key.places[robot] as usize][task + 1];
+                let from = |robot: usize| location(self.problem, robot, key.places[robot]);
+                let arrival = |robot: usize| times.ready[robot] + travel[from(robot)][task + 1];
                 start = start.max(robots.map(arrival).fold(f64::INFINITY, f64::min));
             }
             bound = bound.max(start + self.tails[task]);
@@ -218,19 +225,25 @@ fn shortest(travel: &[Vec<f64>]) -> Vec<Vec<f64>> {
     shortest
 }
 
-/// For each place and each set of tasks within `own`, how long the shortest tour takes from the place through
-/// all of them to the last location, work included.
-fn tours(problem: &Problem, own: u16, shortest: &[Vec<f64>]) -> Vec<Vec<f64>> {
+/// The location of a robot's place.
+fn location(problem: &Problem, robot: usize, place: u8) -> usize {
+    if place == START { problem.robots[robot].start } else { place.into() }
+}
+
+/// For each place and each set of tasks within `own`, how long the shortest tour of a robot takes from the
+/// place through all of them to its end, work included.
+fn tours(problem: &Problem, robot: usize, own: u16, shortest: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let sets = 1 << problem.tasks.len();
     let mut tours = vec![vec![0.0; sets]; problem.tasks.len() + 1];
     for set in (0..sets).filter(|set| set & !(own as usize) == 0) {
         for place in 0..tours.len() {
+            let from = &shortest[location(problem, robot, place as u8)];
             let tasks = (0..problem.tasks.len()).filter(|task| set >> task & 1 == 1);
             let through = |task: usize| {
-                shortest[place][task + 1] + problem.tasks[task].duration + tours[task + 1][set & !(1 << task)]
+                from[task + 1] + problem.tasks[task].duration + tours[task + 1][set & !(1 << task)]
             };
             let least = tasks.map(through).fold(f64::INFINITY, f64::min);
-            tours[place][set] = if set == 0 { shortest[place][problem.last()] } else { least };
+            tours[place][set] = if set == 0 { from[problem.robots[robot].end] } else { least };
         }
     }
     tours

@@ -3,6 +3,17 @@
 /// A set of skills, a bit for each.
 pub type Skills = u64;
 
+/// A robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Robot {
+    /// Its skills.
+    pub skills: Skills,
+    /// The location where it begins; that of no task.
+    pub start: usize,
+    /// The location to which it goes after its last task.
+    pub end: usize,
+}
+
 /// A task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Task {
@@ -14,16 +25,16 @@ pub struct Task {
     pub after: Vec<usize>,
 }
 
-/// A problem of task allocation. Locations are numbered: 0 is where all robots begin, task j is at j + 1, and
-/// after the tasks comes the last location.
+/// A problem of task allocation. Locations are numbered: task j is at j + 1, and the others are those where
+/// robots begin and end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
     /// Its name.
     pub name: String,
     /// How many skills there are.
     pub skills: usize,
-    /// The skills of each robot.
-    pub robots: Vec<Skills>,
+    /// The robots.
+    pub robots: Vec<Robot>,
     /// The tasks.
     pub tasks: Vec<Task>,
     /// The place of each location.
@@ -33,18 +44,26 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// The location after all tasks.
+    /// The location after those of all tasks.
     #[must_use]
     pub fn last(&self) -> usize {
         self.tasks.len() + 1
     }
 
-    /// For each task, how long it and the longest chain of tasks after it take, with the way to the last
-    /// location.
+    /// The skills of some robots together.
+    pub(crate) fn skills_of<'r>(&self, robots: impl IntoIterator<Item = &'r usize>) -> Skills {
+        robots.into_iter().fold(0, |skills, robot| skills | self.robots[*robot].skills)
+    }
+
+    /// For each task, how long it and the longest chain of tasks after it take, with the way from there to
+    /// the nearest end of a robot that has a skill for the last one.
     #[must_use]
     pub fn tails(&self) -> Vec<f64> {
-        let mut tails: Vec<f64> =
-            (0..self.tasks.len()).map(|task| self.travel[task + 1][self.last()]).collect();
+        let way = |(task, of): (usize, &Task)| {
+            let able = self.robots.iter().filter(|robot| robot.skills & of.requires != 0);
+            able.map(|robot| self.travel[task + 1][robot.end]).fold(f64::INFINITY, f64::min)
+        };
+        let mut tails: Vec<f64> = self.tasks.iter().enumerate().map(way).collect();
         // As many rounds as the longest chain has tasks.
         for _ in 0..self.tasks.len() {
             let before = tails.clone();

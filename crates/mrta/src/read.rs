@@ -1,4 +1,4 @@
-//! Problems as JSON, in the form of MRTA-Benchmark.
+//! Problems as JSON, in the form of MRTA-Benchmark. A text in the form of HeteroMRTA is told by its fields.
 //!
 //! `Q` has a row for each robot and a 0 or 1 for each skill. `R` has a row for each task, in the same way,
 //! and `T_e` how long each takes; the first and the last row are no tasks, but the first and the last
@@ -6,41 +6,13 @@
 //! pairs of rows: the first must be over before the second. `T_t` has the time of travel between all rows;
 //! without it, distance is time.
 
-use std::fmt;
-
 use serde_json::{Value, json};
 
-use crate::problem::{Problem, Skills, Task};
+use crate::fields::{BadProblem, Reader, found};
+use crate::problem::{Problem, Robot, Skills, Task};
 
-/// What is wrong with a field.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BadField {
-    /// The field, such as `R[3]`.
-    pub field: String,
-    /// The rule that it breaks.
-    pub rule: String,
-    /// What was found.
-    pub found: String,
-}
-
-impl fmt::Display for BadField {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: must {}, found {}", self.field, self.rule, self.found)
-    }
-}
-
-/// Why a text is no problem.
-#[derive(Debug, thiserror::Error)]
-pub enum BadProblem {
-    /// It is not JSON.
-    #[error("the text is not JSON: {0}")]
-    Json(#[from] serde_json::Error),
-    /// Fields, all at once.
-    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Fields(Vec<BadField>),
-}
-
-/// Reads a problem.
+/// Reads a problem in the form of MRTA-Benchmark, or in that of HeteroMRTA's `config.json`: that has `robots`
+/// or `tasks` and no `Q`.
 ///
 /// # Errors
 /// A text that is not JSON, or all fields that break a rule.
@@ -52,16 +24,23 @@ pub fn read(name: &str, text: &str) -> Result<Problem, BadProblem> {
         serde_json::from_str(&quoted).map_err(|_| error)
     })?;
     let mut reader = Reader { json: &json, bad: Vec::new() };
-    let problem = reader.problem(name);
+    let is_there = |field: &str| json.get(field).is_some();
+    let is_hetero = !is_there("Q") && (is_there("robots") || is_there("tasks"));
+    let problem = if is_hetero { reader.hetero(name) } else { reader.benchmark(name) };
     match problem {
         Some(problem) if reader.bad.is_empty() => Ok(problem),
         _ => Err(BadProblem::Fields(reader.bad)),
     }
 }
 
-/// Writes a problem as [`read`] reads it.
+/// Writes a problem in the form of MRTA-Benchmark; `None` if not all robots begin at location 0 and end at
+/// the last one, because that form has no other places for them.
 #[must_use]
-pub fn write(problem: &Problem) -> String {
+pub fn write(problem: &Problem) -> Option<String> {
+    let ends = [0, problem.last()];
+    if problem.robots.iter().any(|robot| [robot.start, robot.end] != ends) {
+        return None;
+    }
     let row =
         |skills: &Skills| (0..problem.skills).map(|skill| (skills >> skill) & 1).collect::<Vec<Skills>>();
     let with_ends = |first: Value, tasks: Vec<Value>| -> Vec<Value> {
@@ -72,29 +51,19 @@ pub fn write(problem: &Problem) -> String {
     let pairs = problem.tasks.iter().enumerate();
     let pairs = pairs.flat_map(|(task, of)| of.after.iter().map(move |first| [first + 1, task + 1]));
     let json = json!({
-        "Q": problem.robots.iter().map(row).collect::<Vec<_>>(),
+        "Q": problem.robots.iter().map(|robot| row(&robot.skills)).collect::<Vec<_>>(),
         "R": with_ends(json!(row(&0)), required),
         "T_e": with_ends(json!(0), durations),
         "T_t": problem.travel,
         "task_locations": problem.places,
         "precedence_constraints": pairs.collect::<Vec<_>>(),
     });
-    format!("{json}\n")
-}
-
-/// A text that is being read, with what is wrong so far.
-struct Reader<'j> {
-    json: &'j Value,
-    bad: Vec<BadField>,
+    Some(format!("{json}\n"))
 }
 
 impl Reader<'_> {
-    fn refuse(&mut self, field: impl fmt::Display, rule: impl fmt::Display, found: impl fmt::Display) {
-        let [field, rule, found] = [field.to_string(), rule.to_string(), found.to_string()];
-        self.bad.push(BadField { field, rule, found });
-    }
-
-    fn problem(&mut self, name: &str) -> Option<Problem> {
+    /// A problem in the form of MRTA-Benchmark.
+    fn benchmark(&mut self, name: &str) -> Option<Problem> {
         let robots = self.table("Q")?;
         let (rows, durations) = (self.table("R")?, self.row("T_e")?);
         let skills = robots.first().map_or(0, Vec::len);
@@ -138,6 +107,7 @@ impl Reader<'_> {
             after: after[row].iter().map(|first| first - 1).collect(),
         };
         let tasks = (1..count - 1).map(task).collect();
+        let robots = robots.into_iter().map(|skills| Robot { skills, start: 0, end: count - 1 }).collect();
         let travel = if travel.is_empty() { Problem::distances(&places) } else { travel };
         Some(Problem { name: name.to_owned(), skills, robots, tasks, places, travel })
     }
@@ -166,13 +136,7 @@ impl Reader<'_> {
             self.refuse(field, "be a list of numbers", row);
             return Vec::new();
         };
-        let mut number = |(at, value): (usize, &Value)| {
-            let number = value.as_f64().filter(|number| number.is_finite());
-            if number.is_none() {
-                self.refuse(format!("{field}[{at}]"), "be a finite number", value);
-            }
-            number.unwrap_or(0.0)
-        };
+        let mut number = |(at, value): (usize, &Value)| self.number(format!("{field}[{at}]"), Some(value));
         row.iter().enumerate().map(&mut number).collect()
     }
 
@@ -251,8 +215,4 @@ impl Reader<'_> {
         }
         Some(travel)
     }
-}
-
-fn found(value: Option<&Value>) -> String {
-    value.map_or("nothing".to_owned(), ToString::to_string)
 }

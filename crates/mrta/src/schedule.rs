@@ -4,11 +4,14 @@ use std::cmp::Reverse;
 
 use crate::problem::{Problem, Skills};
 
+#[cfg(test)]
+mod recorded;
+
 /// Where the robots are and when they are free, and which tasks are covered.
 #[derive(Debug, Clone)]
 pub(crate) struct Schedule<'p> {
     pub(crate) problem: &'p Problem,
-    /// The location of each robot: that of its last task.
+    /// The location of each robot: that of its last task, or where it begins.
     pub(crate) place: Vec<usize>,
     /// When each robot is free; of a robot that waits for others, when it has arrived.
     pub(crate) ready: Vec<f64>,
@@ -34,7 +37,7 @@ impl<'p> Schedule<'p> {
         let (robots, tasks) = (problem.robots.len(), problem.tasks.len());
         Self {
             problem,
-            place: vec![0; robots],
+            place: problem.robots.iter().map(|robot| robot.start).collect(),
             ready: vec![0.0; robots],
             is_bound: vec![false; robots],
             teams: vec![Vec::new(); tasks],
@@ -51,11 +54,7 @@ impl<'p> Schedule<'p> {
 
     /// The skills that the group of a task still lacks.
     pub(crate) fn missing(&self, task: usize) -> Skills {
-        self.problem.tasks[task].requires & !self.skills_of(&self.teams[task])
-    }
-
-    fn skills_of(&self, robots: &[usize]) -> Skills {
-        robots.iter().fold(0, |skills, robot| skills | self.problem.robots[*robot])
+        self.problem.tasks[task].requires & !self.problem.skills_of(&self.teams[task])
     }
 
     /// When a robot that sets out at a time, or as soon as it is free, is at a task.
@@ -88,25 +87,26 @@ impl<'p> Schedule<'p> {
     pub(crate) fn team(&self, task: usize, now: f64) -> Option<Team> {
         let mut missing = self.missing(task);
         let useful = (0..self.ready.len())
-            .filter(|robot| !self.is_bound[*robot] && self.problem.robots[*robot] & missing != 0);
+            .filter(|robot| !self.is_bound[*robot] && self.problem.robots[*robot].skills & missing != 0);
         let mut useful: Vec<(f64, usize)> =
             useful.map(|robot| (self.arrival(robot, task, now), robot)).collect();
         useful.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let (mut start, mut covered, mut count) = (self.least_start(task), 0, 0);
         while covered & missing != missing {
             let (arrival, robot) = useful.get(count)?;
-            (start, covered, count) = (start.max(*arrival), covered | self.problem.robots[*robot], count + 1);
+            (start, covered, count) =
+                (start.max(*arrival), covered | self.problem.robots[*robot].skills, count + 1);
         }
         let in_time = useful.iter().take_while(|(arrival, _)| *arrival <= start).count();
         useful.truncate(in_time);
         let mut joining = Vec::new();
         while missing != 0 {
             let most = |(rank, (_, robot)): &(usize, &(f64, usize))| {
-                ((self.problem.robots[*robot] & missing).count_ones(), Reverse(*rank))
+                ((self.problem.robots[*robot].skills & missing).count_ones(), Reverse(*rank))
             };
             let (_, (_, robot)) = useful.iter().enumerate().max_by_key(most)?;
             joining.push(*robot);
-            missing &= !self.problem.robots[*robot];
+            missing &= !self.problem.robots[*robot].skills;
         }
         self.drop_redundant(task, &mut joining);
         Some(Team { task, start, joining })
@@ -118,7 +118,11 @@ impl<'p> Schedule<'p> {
         while at < joining.len() {
             let mut others = joining.clone();
             others.remove(at);
-            if self.missing(task) & !self.skills_of(&others) == 0 { *joining = others } else { at += 1 }
+            if self.missing(task) & !self.problem.skills_of(&others) == 0 {
+                *joining = others;
+            } else {
+                at += 1;
+            }
         }
     }
 
@@ -126,20 +130,21 @@ impl<'p> Schedule<'p> {
     /// are free or come free from those before (the banker's algorithm, Dijkstra 1965).
     pub(crate) fn is_safe(&self) -> bool {
         let free = (0..self.is_bound.len()).filter(|robot| !self.is_bound[*robot]).collect::<Vec<_>>();
-        let mut pool = self.skills_of(&free);
+        let mut pool = self.problem.skills_of(&free);
         let is_waiting = |task: &usize| self.ends[*task].is_none() && !self.teams[*task].is_empty();
         let mut waiting: Vec<usize> = (0..self.ends.len()).filter(is_waiting).collect();
         while let Some(at) = waiting.iter().position(|task| self.missing(*task) & !pool == 0) {
-            pool |= self.skills_of(&self.teams[waiting.swap_remove(at)]);
+            pool |= self.problem.skills_of(&self.teams[waiting.swap_remove(at)]);
         }
         waiting.is_empty()
     }
 
-    /// When the last robot is at the last location. Robots without a task do not count.
+    /// When the last robot is at its end. Robots without a task do not count.
     pub(crate) fn makespan(&self) -> f64 {
-        let way = |robot: usize| self.problem.travel[self.place[robot]][self.problem.last()];
-        let used = (0..self.ready.len()).filter(|robot| self.place[*robot] != 0);
-        used.map(|robot| self.ready[robot] + way(robot)).fold(0.0, f64::max)
+        let Problem { robots, travel, .. } = self.problem;
+        let used = robots.iter().zip(&self.place).zip(&self.ready);
+        let used = used.filter(|((robot, place), _)| robot.start != **place);
+        used.map(|((robot, place), ready)| ready + travel[*place][robot.end]).fold(0.0, f64::max)
     }
 }
 

@@ -1,13 +1,14 @@
 //! The optimum beside a search that looks at everything, and schedules by all policies.
 
-use mrta::{Problem, cbba, dispatch, earliest, generate, optimum};
+use mrta::{Problem, Robot, cbba, dispatch, earliest, generate, optimum};
 
 /// The least makespan of all orders of tasks with all groups that cover them, needless members included.
 fn least(problem: &Problem, place: &[usize], ready: &[f64], ends: &[Option<f64>]) -> f64 {
     let robots = problem.robots.len();
     if ends.iter().all(Option::is_some) {
-        let used = (0..robots).filter(|robot| place[*robot] != 0);
-        return used.map(|r| ready[r] + problem.travel[place[r]][problem.last()]).fold(0.0, f64::max);
+        let of = |robot: &usize| problem.robots[*robot];
+        let used = (0..robots).filter(|robot| place[*robot] != of(robot).start);
+        return used.map(|r| ready[r] + problem.travel[place[r]][of(&r).end]).fold(0.0, f64::max);
     }
     let mut best = f64::INFINITY;
     for (task, of) in problem.tasks.iter().enumerate().filter(|(task, _)| ends[*task].is_none()) {
@@ -16,7 +17,7 @@ fn least(problem: &Problem, place: &[usize], ready: &[f64], ends: &[Option<f64>]
         };
         for group in 1..1_u32 << robots {
             let members: Vec<usize> = (0..robots).filter(|robot| group >> robot & 1 == 1).collect();
-            if of.requires & !members.iter().fold(0, |all, robot| all | problem.robots[*robot]) != 0 {
+            if of.requires & !members.iter().fold(0, |all, robot| all | problem.robots[*robot].skills) != 0 {
                 continue;
             }
             let arrivals = members.iter().map(|r| ready[*r] + problem.travel[place[*r]][task + 1]);
@@ -39,28 +40,53 @@ fn small(seed: u64) -> Problem {
     problem.tasks.iter_mut().for_each(|task| task.after.retain(|first| *first < tasks));
     let kept: Vec<usize> = (0..=tasks).chain([last]).collect();
     problem.places = kept.iter().map(|at| problem.places[*at]).collect();
+    problem.robots.iter_mut().for_each(|robot| robot.end = tasks + 1);
+    with_ways(problem, seed.is_multiple_of(2))
+}
+
+fn with_ways(mut problem: Problem, are_rounded_up: bool) -> Problem {
     problem.travel = Problem::distances(&problem.places);
-    if seed.is_multiple_of(2) {
+    if are_rounded_up {
         problem.travel.iter_mut().flatten().for_each(|time| *time = (*time / 10.0).ceil() * 10.0);
     }
     problem
 }
 
+/// The same problem with own depots: each robot ends where it begins, or, in every third problem, where
+/// another robot begins. Location 0 is used by no robot, and far away.
+fn with_depots(mut problem: Problem, seed: u64) -> Problem {
+    let drawn = generate("depots", seed + 1_000_000).places;
+    let (first, robots) = (problem.places.len(), problem.robots.len());
+    problem.places.extend(&drawn[..robots]);
+    problem.places[0] = [-1000.0, -1000.0];
+    for (at, robot) in problem.robots.iter_mut().enumerate() {
+        let end = if seed.is_multiple_of(3) { (at + 1) % robots } else { at };
+        *robot = Robot { start: first + at, end: first + end, ..*robot };
+    }
+    with_ways(problem, seed.is_multiple_of(2))
+}
+
+fn is_that_of_brute_force(problem: &Problem, seed: u64) {
+    let places: Vec<usize> = problem.robots.iter().map(|robot| robot.start).collect();
+    let expected = least(problem, &places, &vec![0.0; places.len()], &vec![None; problem.tasks.len()]);
+    let found = optimum(problem).unwrap();
+    assert!((found - expected).abs() < 1e-9, "seed {seed}: {found}, brute force {expected}");
+}
+
 #[test]
 fn the_optimum_of_300_problems_is_that_of_brute_force() {
-    for seed in 0..300 {
-        let problem = small(seed);
-        let [robots, tasks] = [problem.robots.len(), problem.tasks.len()];
-        let expected = least(&problem, &vec![0; robots], &vec![0.0; robots], &vec![None; tasks]);
-        let found = optimum(&problem).unwrap();
-        assert!((found - expected).abs() < 1e-9, "seed {seed}: {found}, brute force {expected}");
-    }
+    (0..300).for_each(|seed| is_that_of_brute_force(&small(seed), seed));
+}
+
+#[test]
+fn the_optimum_of_300_problems_with_depots_is_that_of_brute_force() {
+    (0..300).for_each(|seed| is_that_of_brute_force(&with_depots(small(seed), seed), seed));
 }
 
 #[test]
 fn larger_problems_are_not_solved_exactly() {
     let mut problem = generate("large", 1);
-    problem.robots = vec![1; 5];
+    problem.robots = vec![problem.robots[0]; 5];
     assert_eq!(optimum(&problem), None);
 }
 
@@ -68,8 +94,10 @@ fn larger_problems_are_not_solved_exactly() {
 fn no_schedule_is_shorter_than_the_optimum_and_all_policies_make_one() {
     let names =
         ["RANDOM", "DIS", "OPTIMAL", "GREEDY", "GRAPE", "SNAKE", "KMEANS", "SPECTRAL", "BANDIT", "RNE"];
-    for seed in 0..100 {
-        let problem = generate("drawn", seed);
+    let drawn = (0..100).map(|seed| (seed, generate("drawn", seed)));
+    let drawn =
+        drawn.flat_map(|(seed, problem)| [(seed, problem.clone()), (seed, with_depots(problem, seed))]);
+    for (seed, problem) in drawn {
         let least = optimum(&problem).unwrap() - 1e-9;
         assert!(earliest(&problem) >= least && cbba(&problem) >= least, "seed {seed}");
         for name in names {

@@ -51,6 +51,6 @@ fn the_least_makespans_and_those_of_the_earliest_start_are_the_published_ones() 
 #[test]
 fn what_is_written_is_read_as_the_same_problem() {
     for (text, _) in PUBLISHED {
-        assert_eq!(problem(&write(&problem(text))), problem(text));
+        assert_eq!(problem(&write(&problem(text)).unwrap()), problem(text));
     }
 }

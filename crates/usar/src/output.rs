@@ -130,6 +130,13 @@ pub(crate) fn create_new(flag: &str, path: &Path) -> Result<File, Failure> {
 
 /// Refuses to write to a non-empty folder, unless `force` is given; else creates it.
 pub(crate) fn make_folder(path: &Path, force: bool) -> Result<(), Failure> {
+    check_folder(path, force)?;
+    std::fs::create_dir_all(path)
+        .map_err(|error| Failure::storage(format!("cannot write to {}: {error}", path.display())))
+}
+
+/// Refuses a folder that [`make_folder`] would refuse, and makes none.
+pub(crate) fn check_folder(path: &Path, force: bool) -> Result<(), Failure> {
     let is_empty = match std::fs::read_dir(path) {
         Ok(mut entries) => entries.next().is_none(),
         Err(error) if error.kind() == io::ErrorKind::NotFound => true,
@@ -139,6 +146,5 @@ pub(crate) fn make_folder(path: &Path, force: bool) -> Result<(), Failure> {
         let rule = "is not empty; nothing was written; --force writes to it all the same";
         refuse!("--out: {} {rule}", path.display());
     }
-    std::fs::create_dir_all(path)
-        .map_err(|error| Failure::storage(format!("cannot write to {}: {error}", path.display())))
+    Ok(())
 }

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use rne_core::{Asked, Decision, PolicyError, Session, TrialStart};
 
 use crate::arguments::{ProgressArguments, ReplaceArgument, ShownArguments, count, one_seed, parse_policy};
+use crate::output::check_folder;
 use crate::prelude::*;
 use summary::{Method, Solved};
 
@@ -21,8 +22,9 @@ use summary::{Method, Solved};
 Robots with skills, tasks that need groups with certain skills for some time, ways, and an order: how much \
 longer does a schedule take than the shortest one? A problem is a JSON file of MRTA-Benchmark: Q (skills \
 of robots), R (skills that tasks require), T_e (how long tasks take), task_locations, \
-precedence_constraints and, if ways take other times than their lengths, T_t. A folder stands for all of \
-its .json files.
+precedence_constraints and, if ways take other times than their lengths, T_t. It may also be a config.json \
+of HeteroMRTA: setup, tasks, and robots that begin and end at their own places. A folder stands for all of \
+its .json files and for the config.json of its subfolders; a config.json has the name of its folder.
 
 Problems of at most 10 tasks and 4 robots are solved exactly. Gaps are in percent of the optimum, or of \
 the best schedule found where a problem is larger. A policy is asked whenever a robot becomes free, over \
@@ -35,7 +37,8 @@ Examples:
   usar bench --generate 1000 --seed 1
   usar bench --generate 100 --policies 'DIS,GREEDY(quality: 0),RNE' --out results/bench
   usar bench 1p_000000.json --policies OPTIMAL --json
-  usar bench MRTA-Benchmark/problems --limit 100 --format csv")]
+  usar bench MRTA-Benchmark/problems --limit 100 --format csv
+  usar bench HeteroMRTA/RALTestSet --policies DIS,GREEDY,RNE")]
 pub(crate) struct Arguments {
     /// Problem (JSON), or a folder of problems
     #[arg(value_name = "FILE|DIR", required_unless_present = "generate", conflicts_with = "generate")]
@@ -77,7 +80,7 @@ impl Arguments {
         }
         let problems = self.problems()?;
         if let Some(place) = &self.out {
-            make_folder(place, self.replace.force)?;
+            check_folder(place, self.replace.force)?;
         }
         let solved = self.progress.work(problems.len(), "problems", |bar| {
             let solve = |problem: &Problem| {
@@ -105,13 +108,15 @@ impl Arguments {
     }
 
     fn write(&self, place: &Path, problems: &[Problem], solved: &[Solved]) -> Result<(), Failure> {
+        make_folder(place, self.replace.force)?;
         let table = csv_of(summary::rows(solved))?;
         NewFile::write(place, "makespans.csv", &table)?;
         if self.generate.is_some() {
             let folder = place.join("problems");
             std::fs::create_dir_all(&folder)?;
-            for problem in problems {
-                NewFile::write(&folder, &format!("{}.json", problem.name), mrta::write(problem).as_bytes())?;
+            // Made problems have one start and one end, which can be written.
+            for (problem, text) in problems.iter().filter_map(|of| Some((of, mrta::write(of)?))) {
+                NewFile::write(&folder, &format!("{}.json", problem.name), text.as_bytes())?;
             }
         }
         Ok(())
