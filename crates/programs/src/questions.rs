@@ -1,5 +1,9 @@
 //! Random questions, for checks of policies: one to four roles, one to four tasks, sizes of all kinds.
 
+mod evidence;
+
+pub use evidence::with_evidence;
+
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::question::hardest_first;
@@ -13,7 +17,7 @@ const NEEDS: [&str; 4] = ["hp", "v", "eng", "cap"];
 /// Largest number of roles, of tasks, and of members of a role.
 const MOST: [usize; 3] = [4, 4, 6];
 
-/// The question of a seed. Every fact is given that a policy may look at, but for the history.
+/// The question of a seed. Every fact is given that a policy may look at, but for history and evidence.
 #[must_use]
 pub fn question(seed: u64) -> Question {
     let mut draws = ChaCha8Rng::seed_from_u64(seed);

@@ -9,7 +9,6 @@
 pub mod bend;
 pub mod damage;
 pub mod density;
-pub mod evidence;
 pub mod golden;
 pub mod journeys;
 pub mod kills;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use programs::questions::question;
+use programs::questions::{question, with_evidence};
 use programs::templates::Language;
 use rne_core::MadePolicy;
 
@@ -34,6 +34,17 @@ fn template(language: Language, folder: &Path) -> MadePolicy {
     }
     let command = language.command(&name);
     exec(&command.iter().map(String::as_str).collect::<Vec<_>>(), "")
+}
+
+#[test]
+fn questions_with_evidence_keep_the_rules_of_questions() {
+    for seed in 0..TEAMS {
+        let question = with_evidence(question(seed)).checked();
+        let question = question.unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let evidence = question.evidence.expect("evidence");
+        assert!(evidence.reports.len() > question.members.len() && !evidence.ledger.is_empty());
+        assert!(evidence.bodies.iter().all(|body| body.needs.len() == 3), "hp, v and eng follow from levels");
+    }
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
+use programs::questions::with_evidence;
 use rne_core::{Asked, Question};
-use xtask::evidence::with_evidence;
 use xtask::team::question;
 
 /// Number of decisions of each team; the median is printed.

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use programs::questions::question;
+use programs::questions::{question, with_evidence};
 use rne_core::{Asked, Assignment, Basis, PolicyError, Question, Session, TrialStart};
 use serde::Serialize;
 
@@ -52,9 +52,6 @@ pub(super) fn check(
             spec.label
         );
     }
-    if rne_core::arrow::Written::of(spec.written()).guide.is_some() {
-        tell("note: these questions have no evidence, so that the estimator is not asked");
-    }
     let opened = |error: PolicyError| Failure::input(format!("policy {}: {error}", spec.label));
     let begun = Instant::now();
     let mut session = spec.made().open().map_err(opened)?;
@@ -65,7 +62,7 @@ pub(super) fn check(
     };
     let (mut breaches, mut differing, mut times) = (Vec::new(), Vec::new(), Vec::new());
     for seed in 0..QUESTIONS {
-        let question = question(seed);
+        let question = if seed % 2 == 0 { question(seed) } else { with_evidence(question(seed)) };
         let (answer, took) = timed(&mut *session, seed, &question);
         times.push(took);
         if is_stopped() {

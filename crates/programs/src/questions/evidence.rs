@@ -1,11 +1,11 @@
-//! Evidence for questions about teams of any size, for measurements of estimators.
+//! Evidence for questions about teams of any size.
 
 use std::collections::BTreeMap;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::{
-    Body, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome, NeedId,
+    Body, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome, Need, NeedId,
     Question, Rating, RobotRound, RoundOutcome, TaskId,
 };
 
@@ -20,15 +20,17 @@ const MATES: usize = 10;
 
 /// The question with seven rounds of evidence, asked in the eighth. Robots report every ten seconds and rate up
 /// to ten mates a round.
+#[must_use]
 pub fn with_evidence(question: Question) -> Question {
     let mut draws = ChaCha8Rng::seed_from_u64(11);
     let ids: Vec<u32> = question.members.iter().map(|member| member.id).collect();
-    let groups: Vec<Vec<u32>> =
-        [0, 1].map(|half| ids.iter().copied().filter(|id| id % 2 == half).collect()).into();
+    let tasks = question.tasks.len();
+    let dealt = |task: usize| ids.iter().skip(task).step_by(tasks).copied().collect();
+    let groups: Vec<Vec<u32>> = (0..tasks).map(dealt).collect();
     let mut evidence = Evidence {
         energy_threshold: 20.0,
         hp_threshold: 20.0,
-        bodies: question.members.iter().map(body).collect(),
+        bodies: question.members.iter().map(|member| body(member, &question.needs)).collect(),
         initial: Some([Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }]),
         ..Evidence::default()
     };
@@ -50,17 +52,20 @@ pub fn with_evidence(question: Question) -> Question {
     Question { round: 8, history, evidence: Some(evidence), may_idle: true, ..question }
 }
 
-fn body(member: &Member) -> Body {
-    let follows = |need: u16| {
-        let level = if need == 3 { Level::Energy } else { Level::Health };
-        LevelNeed {
-            need: NeedId(need),
-            level,
-            at_0: 0.0,
-            at_100: [100.0, 2.0, 5.0, 100.0][usize::from(need)],
-        }
+/// What follows from a level, by the name of the need, and its value at 100 %.
+const OF_LEVELS: [(&str, Level, f64); 4] = [
+    ("hp", Level::Health, 100.0),
+    ("v", Level::Health, 2.0),
+    ("sen", Level::Health, 5.0),
+    ("eng", Level::Energy, 100.0),
+];
+
+fn body(member: &Member, needs: &[Need]) -> Body {
+    let follows = |(need, of): (u16, &Need)| {
+        let (_, level, at_100) = OF_LEVELS.into_iter().find(|(name, ..)| *name == of.name)?;
+        Some(LevelNeed { need: NeedId(need), level, at_0: 0.0, at_100 })
     };
-    let needs = (0..4).map(follows).collect();
+    let needs = (0..).zip(needs).filter_map(follows).collect();
     let guides = member.role.index() == 2;
     Body { robot: member.id, top_mps: 2.0, floor: 0.5, carries: member.role.index() == 0, guides, needs }
 }
