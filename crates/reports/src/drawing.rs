@@ -96,6 +96,15 @@ impl Drawing {
 }
 
 impl Sketch {
+    /// The drawings and numbers of those that have something to draw, each with the name of its file.
+    pub fn files(all: Vec<Self>) -> Vec<(String, Vec<u8>)> {
+        let files = |Figure { name, svg, csv, .. }: Figure| {
+            [(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.csv"), csv.into_bytes())]
+        };
+        let drawn = all.into_iter().filter(|sketch| !sketch.drawing.is_empty()).map(Self::drawn);
+        drawn.flat_map(files).collect()
+    }
+
     /// The figure in the report's layout.
     pub fn drawn(self) -> Figure {
         let Self { name, title, caption, drawing, csv } = self;

@@ -5,6 +5,7 @@
 
 mod case;
 mod chart;
+mod deceit;
 mod decisions;
 mod drawing;
 mod explored;
@@ -18,6 +19,7 @@ pub mod table;
 mod wanted;
 
 pub use chart::{Labels, Series, chart};
+pub use deceit::deceit_figures;
 pub use explored::{ranking, sensitivity_figure, sensitivity_table};
 pub use figures::distrust_map;
 pub use maps::ShownTrial;

@@ -3,7 +3,7 @@
 use experiments::Failure;
 use experiments::regret::Analysis;
 
-use crate::drawing::{Figure, Sketch};
+use crate::drawing::Sketch;
 use crate::figures::regret;
 
 /// The figures of a study as files: for each figure its drawing and the numbers behind it, each with the
@@ -12,9 +12,5 @@ use crate::figures::regret;
 /// # Errors
 /// None: all is made in memory.
 pub fn regret_figures(analyses: &[Analysis]) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let files = |Figure { name, svg, csv, .. }: Figure| {
-        [(format!("{name}.svg"), svg.into_bytes()), (format!("{name}.csv"), csv.into_bytes())]
-    };
-    let figures = regret(analyses)?.into_iter().filter(|sketch| !sketch.drawing.is_empty());
-    Ok(figures.map(Sketch::drawn).flat_map(files).collect())
+    Ok(Sketch::files(regret(analyses)?))
 }

@@ -21,6 +21,8 @@ pub struct Borne {
     pub lie: String,
     /// The mean of the metric for each number of liars.
     pub means: Vec<Option<f64>>,
+    /// The mean of its difference from the draw, likewise; only trials count that have one for each number.
+    pub differences: Vec<Option<f64>>,
     /// How many liars it bears.
     pub breakdown: Breakdown,
 }
@@ -154,6 +156,7 @@ impl Rows<'_> {
             policy: self.label(policy).to_owned(),
             lie: lie.name.clone(),
             means: lie.cases.iter().map(mean).collect(),
+            differences: differences.iter().map(|row| Moments::of(row).mean).collect(),
             breakdown: Breakdown::of(&differences, margin.unwrap_or(0.0), CONFIDENCE),
         }
     }

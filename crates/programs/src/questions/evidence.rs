@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::{
-    Body, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome, Need, NeedId,
-    Question, Rating, RobotRound, RoundOutcome, TaskId,
+    Body, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome, Need,
+    NeedId, Question, Rating, RobotRound, RoundOutcome, TaskId,
 };
 
 /// Reports of a robot in a round: one every ten seconds of 150.

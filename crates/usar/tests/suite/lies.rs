@@ -147,6 +147,12 @@ fn a_study_of_deceit_tells_what_lies_cost_and_how_well_estimators_judge() {
         "nobody lies; all are believed"
     );
     assert!(value(3, "trust_auc").unwrap() > 0.6 && value(3, "rounds_to_detect").is_some(), "{json}");
+    let file = |name: &str| std::fs::read_to_string(here.join("results/lied").join(name)).unwrap();
+    let above = file("deceit-above-draw.csv");
+    let cells: Vec<Vec<&str>> = above.lines().skip(1).map(|row| row.rsplit(',').collect()).collect();
+    assert_eq!(cells.len(), 4, "two policies, none and two liars: {above}");
+    assert_eq!(cells[2][2], cells[3][2], "who knows the truth hears no lie: {above}");
+    assert!(cells[0][2] != cells[1][2] && file("deceit-above-draw.svg").contains(">liars<"), "{above}");
     let other = LIED.replace("\"deceit[0].who\": [Count(2), Count(0)]", "\"dt_s\": [0.02, 0.04]");
     std::fs::write(here.join("other.ron"), other).unwrap();
     let refused = usar(here, "study deceit other.ron --out nowhere");

@@ -5,9 +5,11 @@ use std::collections::BTreeMap;
 use experiments::comparison::{digits, short};
 use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay};
 use experiments::experiment::{Experiment, Overrides};
+use experiments::files::NewFile;
 use experiments::oracle::Objective;
 use experiments::regret::StudyFolder;
 use experiments::sweep::folder::Folder;
+use reports::deceit_figures;
 use reports::table::{between, headed, mean, number, or_dash, right};
 use serde_json::json;
 
@@ -33,7 +35,9 @@ With --replay, policies are asked at the decisions of trials that DIS decided, a
 came of it when the study of regret played all assignments to the end of the round. It is a filter: no decision \
 changes the rounds after it, and a policy that leaves robots idle has no value.
 
-The folder is that of a sweep, with all of its tables; an interrupted study resumes.
+The folder is that of a sweep, with all of its tables, and with two figures and their numbers: what each \
+policy has above a draw by number of liars (deceit-above-draw), and how many liars it bears \
+(deceit-breakdown). An interrupted study resumes.
 
 Examples:
   usar study deceit scenarios/sweeps/trust-tunnel.ron
@@ -79,6 +83,9 @@ impl Arguments {
 
     fn print(&self, folder: &Folder, out: &mut dyn Write) -> Result<(), Failure> {
         let found = Deceit::of(folder)?;
+        for (name, content) in deceit_figures(&found)? {
+            NewFile::write(folder.path(), &name, &content)?;
+        }
         if self.shown.is_json() {
             return print_json(&as_json(&found));
         }
