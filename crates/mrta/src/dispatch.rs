@@ -17,6 +17,7 @@ use rne_core::question::{Member, Need, RandomSeed, SCHEMA_VERSION, Task as Asked
 use rne_core::session::TrialStart;
 use rne_core::{Assignment, AssignmentError, GroupSizes, NeedVector, NeedsError, PolicyError, Question};
 use rne_core::{QuestionError, Quota, RoleId, Session, TaskId};
+use xxhash_rust::xxh3::xxh3_64;
 
 use crate::problem::{Problem, Skills};
 use crate::schedule::Schedule;
@@ -145,7 +146,7 @@ impl Turn {
             members: members(schedule, &rows)?,
             may_idle: true,
             history: Vec::new(),
-            random_seed: RandomSeed::from(u64::from(round)),
+            random_seed: RandomSeed::from(xxh3_64(format!("{} {round}", problem.name).as_bytes())),
             evidence: None,
         };
         Ok(Some(Self { question: question.checked()?, tasks, free }))

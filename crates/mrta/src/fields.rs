@@ -4,6 +4,9 @@ use std::fmt;
 
 use serde_json::Value;
 
+/// The largest number in size: sums and squares of such numbers are finite.
+const MOST: f64 = 1e100;
+
 /// What is wrong with a field.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BadField {
@@ -49,13 +52,17 @@ impl Reader<'_> {
         self.bad.push(BadField { field, rule, found });
     }
 
-    /// A finite number; 0 if it is none, which is refused.
+    /// A finite number of at most [`MOST`] in size; 0 if it is none, which is refused.
     pub(crate) fn number(&mut self, field: impl fmt::Display, value: Option<&Value>) -> f64 {
         let number = value.and_then(Value::as_f64).filter(|number| number.is_finite());
-        if number.is_none() {
-            self.refuse(field, "be a finite number", found(value));
+        match number {
+            None => self.refuse(field, "be a finite number", found(value)),
+            Some(number) if number.abs() > MOST => {
+                self.refuse(field, format!("be at most {MOST:e} in size"), found(value));
+            }
+            Some(number) => return number,
         }
-        number.unwrap_or(0.0)
+        0.0
     }
 }
 

@@ -3,8 +3,8 @@
 //! Dynamic programming over sets of covered tasks: a state is the set, where each robot is, when it is
 //! free, and when those tasks are over that others wait for. Of two states with the same set and places,
 //! one that is nowhere later makes the other one needless, so that each set and places have a Pareto set of
-//! times. Groups have no member that could be left out, which loses nothing if no way is longer than a
-//! detour. A state is dropped if a bound says that it comes to nothing better than the rule of the earliest
+//! times. Groups have no member that could be left out, which loses nothing because no way is longer than a
+//! detour: other problems are not solved. A state is dropped if a bound says that it comes to nothing better than the rule of the earliest
 //! start: each robot has to visit the tasks for which it alone has a skill (Held, Karp 1962), and each task
 //! is followed by its tail.
 //!
@@ -24,19 +24,26 @@ pub const MAX_ROBOTS: usize = 4;
 /// Bounds that are no more than this below a makespan promise nothing better.
 const TIE: f64 = 1e-9;
 
+/// A way is no longer than a detour if it is by no more than this share.
+const ROUNDING: f64 = 1e-12;
+
 /// The place of a robot that has no task yet. Task j is at j + 1.
 const START: u8 = 0;
 
 /// The place of a robot that has nothing left to do.
 const DONE: u8 = u8::MAX;
 
-/// The least makespan; `None` if there are more than [`MAX_TASKS`] tasks or [`MAX_ROBOTS`] robots.
+/// The least makespan; `None` if there are more than [`MAX_TASKS`] tasks or [`MAX_ROBOTS`] robots, or if a way
+/// is longer than a detour.
 #[must_use]
 pub fn optimum(problem: &Problem) -> Option<f64> {
-    if problem.tasks.len() > MAX_TASKS || problem.robots.len() > MAX_ROBOTS {
+    let shortest = shortest(&problem.travel);
+    let is_straight = |(way, least): (&f64, &f64)| *way <= least * (1.0 + ROUNDING);
+    let are_straight = problem.travel.iter().flatten().zip(shortest.iter().flatten()).all(is_straight);
+    if problem.tasks.len() > MAX_TASKS || problem.robots.len() > MAX_ROBOTS || !are_straight {
         return None;
     }
-    let search = Search::of(problem);
+    let search = Search::of(problem, &shortest);
     let mut best = earliest(problem);
     let mut level =
         BTreeMap::from([(Key { covered: 0, places: [START; MAX_ROBOTS] }, vec![Times::default()])]);
@@ -100,7 +107,7 @@ struct Search<'p> {
 }
 
 impl<'p> Search<'p> {
-    fn of(problem: &'p Problem) -> Self {
+    fn of(problem: &'p Problem, shortest: &[Vec<f64>]) -> Self {
         let robots = problem.robots.len();
         let has = |set: u8, robot: usize| set >> robot & 1 == 1;
         let skills =
@@ -122,12 +129,11 @@ impl<'p> Search<'p> {
             (0..problem.tasks.len()).map(|task| u16::from(is_own(task, robot)) << task).sum::<u16>()
         };
         let own: Vec<u16> = (0..robots).map(own).collect();
-        let shortest = shortest(&problem.travel);
         Self {
             problem,
             groups: problem.tasks.iter().map(|task| groups(task.requires)).collect(),
             tails: problem.tails(),
-            tours: (0..robots).map(|robot| tours(problem, robot, own[robot], &shortest)).collect(),
+            tours: (0..robots).map(|robot| tours(problem, robot, own[robot], shortest)).collect(),
             able,
             own,
         }

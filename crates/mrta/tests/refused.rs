@@ -48,6 +48,7 @@ fn every_bad_field_is_told_with_rule_and_found_value() {
         ("T_e", "[0,5,NaN,0]", "T_e[2]: must be a finite number, found \"NaN\""),
         ("T_e", "[0,-Infinity,1,0]", "T_e[1]: must be a finite number, found \"-infinite\""),
         ("T_e", "[0,5,-1,0]", "T_e[2]: must be at least 0, found -1"),
+        ("T_e", "[0,5,1e101,0]", "T_e[2]: must be at most 1e100 in size, found 1e+101"),
         ("T_e", "[5,6]", "T_e: must have a number for each of the 4 rows of R, found 2"),
         (
             "task_locations",

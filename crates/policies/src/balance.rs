@@ -109,3 +109,17 @@ impl Loss for Spread {
         self.sums[task_of[b]] -= moved;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::made_up::with_needs;
+
+    #[test]
+    fn the_example_by_hand() {
+        let question = with_needs(&[&[4.0], &[3.0], &[2.0], &[1.0]], &[1, 1]);
+        let decision = Balance.decide(&question).unwrap();
+        assert_eq!(decision.assignment.groups, [[0, 3], [1, 2]]);
+        assert!(decision.proven_optimal);
+    }
+}

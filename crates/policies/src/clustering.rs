@@ -28,7 +28,10 @@ const PROGRESS: f64 = 1e-12;
 pub(super) fn standardised(question: &Question) -> Vec<Vec<f64>> {
     let mut points = vec![Vec::new(); question.members.len()];
     for k in (0..question.needs.len()).filter(|k| question.needs[*k].weight > 0.0) {
-        let values: Vec<f64> = question.members.iter().map(|member| member.needs.values()[k]).collect();
+        let mut values: Vec<f64> = question.members.iter().map(|member| member.needs.values()[k]).collect();
+        // By a power of two, so that squares are finite and no bit is lost.
+        let (_, power) = libm::frexp(values.iter().copied().fold(0.0, f64::max));
+        values.iter_mut().for_each(|value| *value = libm::ldexp(*value, -power));
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let variance =
             values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / values.len() as f64;

@@ -57,5 +57,7 @@ mod tests {
         let question = with_needs(&[&[1.0], &[8.0], &[2.0], &[9.0]], &[1, 2]);
         let kmeans = KMeans::new(UtilityOptions { distance: 0.0, ..UtilityOptions::default() }).unwrap();
         assert_eq!(kmeans.decide(&question).unwrap().assignment.groups, [[0, 2], [1, 3]]);
+        let large = with_needs(&[&[1e307], &[8e307], &[2e307], &[9e307]], &[1, 2]);
+        assert_eq!(kmeans.decide(&large).unwrap().assignment.groups, [[0, 2], [1, 3]]);
     }
 }

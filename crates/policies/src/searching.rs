@@ -10,8 +10,9 @@ use crate::assigning::of_role;
 /// Most assignments that are looked at one by one.
 const EXACT_ASSIGNMENTS: u64 = 100_000;
 
-/// Most members whose assignments are looked at one by one.
+/// Most members whose assignments are looked at one by one, and most steps that this may take.
 const EXACT_MEMBERS: usize = 1_000;
+const EXACT_STEPS: u64 = 100_000_000;
 
 /// Most swaps that are weighed where there are more assignments.
 const MAX_SWAPS: u64 = 2_000_000;
@@ -21,6 +22,11 @@ const TIE: f64 = 1e-12;
 
 /// What an assignment loses. Members and tasks go by their rows in the question.
 pub(super) trait Loss {
+    /// Steps of a beginning, for so many members.
+    fn steps(members: u64) -> u64 {
+        members
+    }
+
     /// Begins at an assignment: the task of each member.
     fn begin(&mut self, task_of: &[usize]);
 
@@ -37,10 +43,12 @@ pub(super) trait Loss {
 /// The task of each member in an assignment with the least loss that has the sizes of the question, and
 /// whether all were looked at. Where they are too many, swaps of two members of a role improve `start`. Of
 /// equal losses, the one that sends the lower ids to the harder tasks.
-pub(super) fn least(question: &Question, loss: &mut impl Loss, start: Vec<usize>) -> (Vec<usize>, bool) {
+pub(super) fn least<L: Loss>(question: &Question, loss: &mut L, start: Vec<usize>) -> (Vec<usize>, bool) {
     let mut bound = question.clone();
     bound.quotas.iter_mut().for_each(|quota| quota.sizes = GroupSizes::Binding);
-    if assignments::count(&bound) > EXACT_ASSIGNMENTS || question.members.len() > EXACT_MEMBERS {
+    let count = assignments::count(&bound);
+    let steps = count.saturating_mul(L::steps(question.members.len() as u64));
+    if count > EXACT_ASSIGNMENTS || question.members.len() > EXACT_MEMBERS || steps > EXACT_STEPS {
         return (by_swaps(question, loss, start), false);
     }
     let open = question.quotas.iter().map(|quota| quota.members.clone()).collect();

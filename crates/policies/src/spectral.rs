@@ -6,7 +6,6 @@
 //! scaled to length 1 and clustered as by KMEANS, with k groups that get robots. Time: n^3 for n robots.
 //!
 //! Example: robots with the one need 1, 2, 8, 9 and two tasks of two slots: {1, 2} and {8, 9}, as KMEANS.
-//! It differs from KMEANS where clusters are no balls, such as a ring around a ball.
 
 use nalgebra::linalg::SymmetricEigen;
 use nalgebra::{DMatrix, DVector};

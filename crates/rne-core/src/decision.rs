@@ -124,7 +124,7 @@ pub struct Decision {
     /// for a policy that computes none, or where fewer than two groups have members.
     #[serde(default)]
     pub score: Option<RelativeNeedsEntropy>,
-    /// Whether every choice was searched exactly.
+    /// False where the policy aims at the best by some measure, and has not proven that it found it.
     #[serde(default = "yes")]
     pub proven_optimal: bool,
     /// What the score of an exact search is at most: the score itself where every choice was searched

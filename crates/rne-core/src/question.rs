@@ -192,12 +192,17 @@ impl From<u64> for RandomSeed {
     }
 }
 
+/// Whether sums and squares of such numbers are finite.
+fn is_usable(number: &f64) -> bool {
+    number.abs() <= 1e100
+}
+
 impl Question {
     /// Sorts the members and the bodies by their ids and checks that all parts are consistent.
     ///
     /// # Errors
     /// No task or too many; a duplicate id; a role, needs or quotas that do not fit their tables; a number
-    /// that is not finite.
+    /// that is not finite, or above 1e100 in size.
     pub fn checked(mut self) -> Result<Self, QuestionError> {
         self.members.sort_by_key(|member| member.id);
         if self.schema_version != SCHEMA_VERSION {
@@ -227,7 +232,7 @@ impl Question {
     }
 
     fn check_task(&self, task: &Task) -> Result<(), QuestionError> {
-        if let Some(place) = task.place.filter(|place| place.iter().any(|v| !v.is_finite())) {
+        if let Some(place) = task.place.filter(|place| !place.iter().all(is_usable)) {
             return Err(QuestionError::Place { task: task.name.clone(), found: place });
         }
         let required = task.requires.iter().map(|(need, least)| (need.as_str(), *least));
@@ -259,7 +264,7 @@ impl Question {
             ("energy_level", member.energy_level),
             ("hp_level", member.hp_level),
         ];
-        let infinite = |(what, value): (_, Option<f64>)| Some((what, value.filter(|v| !v.is_finite())?));
+        let infinite = |(what, value): (_, Option<f64>)| Some((what, value.filter(|v| !is_usable(v))?));
         match facts.into_iter().find_map(infinite) {
             Some((what, found)) => Err(QuestionError::NotFinite { what, id, found }),
             None => Ok(()),

@@ -5,11 +5,11 @@
 //! `u = quality v_j s_ij f(p) / p - distance c_ij`, with the parts of the [utility](crate::utility). From
 //! nobody placed, the lowest id that gains more than 1e-12 moves to its best task, until no robot gains: a
 //! Nash stable partition. Robots of each role play among themselves, and do not know the sizes that the
-//! question suggests. Where sizes are not free, only tasks with an open slot can be moved to, and what
-//! remains is a choice in the order of the ids.
+//! question suggests. Where sizes are not free, only tasks with an open slot can be moved to: the game ends
+//! when all slots are taken, and what comes out depends on the order of the ids.
 //!
-//! A move is one round in which the robot tells all others of its role the partition. Time: n^2 m for n
-//! members of a role and m tasks, for each round of the members' moves.
+//! A move is one round in which the robot tells all others of its role the partition. Time: n m for each move,
+//! for n members of a role and m tasks.
 //!
 //! Example, with `distance: 0` and free sizes: two equal robots, two tasks of worth 1 and 0.5. The first
 //! robot takes the worthier task. There, the second one would get log2(3) / 2 = 0.79, which is more than 0.5
@@ -121,6 +121,34 @@ impl Policy for Grape {
             let pairs = members.iter().zip(played.task_of);
             pairs.for_each(|(i, rank)| groups[hardest_first[rank].index()].push(question.members[*i].id));
         }
-        Ok(Decision { account: Account::Protocol(sent), ..Decision::unscored(groups) })
+        let account = Account::Protocol(sent);
+        Ok(Decision { proven_optimal: false, account, ..Decision::unscored(groups) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::made_up::with_needs;
+
+    #[test]
+    fn the_example_by_hand() {
+        let mut question = with_needs(&[&[1.0], &[1.0]], &[2, 1]);
+        question.quotas[0].sizes = GroupSizes::Free;
+        let grape = Grape::new(Options { distance: 0.0, ..Options::default() }).unwrap();
+        let decision = grape.decide(&question).unwrap();
+        assert_eq!(decision.assignment.groups, [vec![0, 1], vec![]]);
+        assert!(!decision.proven_optimal);
+    }
+
+    /// The first robot to choose is nearer to the first task, and is pushed out by the others.
+    #[test]
+    fn robots_move_on_while_slots_are_open() {
+        let mut question = with_needs(&[&[1.0], &[1.0], &[1.0], &[1.0]], &[1, 1]);
+        let homes = [49.0, 0.0, 50.0, 50.0];
+        question.members.iter_mut().zip(homes).for_each(|(member, x)| member.home = [x, 0.0]);
+        question.tasks.iter_mut().zip([0.0, 100.0]).for_each(|(task, x)| task.place = Some([x, 0.0]));
+        let decision = Grape::new(Options::default()).unwrap().decide(&question).unwrap();
+        assert_eq!(decision.assignment.groups, [[1, 2], [0, 3]]);
     }
 }

@@ -105,7 +105,7 @@ impl Policy for Greedy {
             let pairs = members.iter().zip(won);
             pairs.for_each(|(i, rank)| groups[hardest_first[rank].index()].push(question.members[*i].id));
         }
-        let decision = Decision::unscored(groups);
+        let decision = Decision { proven_optimal: false, ..Decision::unscored(groups) };
         Ok(match self.options.protocol {
             Protocol::Central => decision,
             Protocol::Ssi | Protocol::Cbba => Decision { account: Account::Protocol(sent), ..decision },

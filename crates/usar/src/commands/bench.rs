@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "N", value_parser = count(1..=1_000_000))]
     generate: Option<u32>,
     /// Seed of the trial, or of what is generated [default: 1]
-    #[arg(long, value_parser = one_seed, requires = "generate")]
+    #[arg(long, value_parser = one_seed, conflicts_with = "file")]
     seed: Option<u64>,
     /// Policies, separated by commas, by their labels or with their options in brackets, and with an estimator
     /// after `<-` [default: all that answer without levels of energy and HP]
@@ -68,7 +68,7 @@ pub(crate) struct Arguments {
 }
 
 /// Policies where none are named.
-const POLICIES: &str = "RANDOM,DIS,OPTIMAL,GREEDY,GRAPE,SNAKE,BALANCE,SIMILAR,KMEANS,SPECTRAL,BANDIT,RNE";
+const POLICIES: &str = "RANDOM,DIS,OPTIMAL,GREEDY,GRAPE,SNAKE,BALANCE,SIMILAR,KMEANS,SPECTRAL,RNE";
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {

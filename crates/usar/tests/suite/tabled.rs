@@ -3,6 +3,20 @@
 use crate::place::{column, place, refused, rows};
 use crate::support::{succeeds, usar};
 
+/// Six, four and two robots of three roles on full graphs, as an independent program counts their messages.
+#[test]
+fn rounds_have_what_robots_would_send() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = "sweep short.ron --policies GREEDY(protocol:Cbba),DIS --trials 1 --quiet --out sent";
+    succeeds(&usar(here, sweep));
+    let sent = |row: csv::StringRecord| [0, 14, 15, 16].map(|column| row[column].to_owned());
+    let sent: Vec<[String; 4]> = rows(&here.join("sent"), "rounds.csv").into_iter().map(sent).collect();
+    assert_eq!(sent.len(), 4, "a round of two groups under each policy");
+    assert!(sent[..2].iter().all(|row| row[1..] == ["7", "276", "24192"]), "{sent:?}");
+    assert!(sent[2..].iter().all(|row| row == &["DIS", "", "", ""]), "{sent:?}");
+}
+
 #[test]
 fn variants_set_several_fields_at_once_and_are_an_axis() {
     let folder = place();
