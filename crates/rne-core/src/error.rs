@@ -79,7 +79,9 @@ pub enum QuestionError {
         found: usize,
     },
     /// A place that is NaN or infinite.
-    #[error("the place of task {task:?} must be two numbers of at most 1e100 in size, found {found:?}")]
+    #[error(
+        "the place of task {task:?} must be two finite numbers of at most 1e100 in size, found {found:?}"
+    )]
     Place {
         /// The task.
         task: String,
@@ -153,7 +155,7 @@ pub enum QuestionError {
         reason: String,
     },
     /// A fact that must be a finite number is not.
-    #[error("{what} of robot {id} must be a number of at most 1e100 in size, found {found}")]
+    #[error("{what} of robot {id} must be a finite number of at most 1e100 in size, found {found}")]
     NotFinite {
         /// The fact.
         what: &'static str,

@@ -159,15 +159,15 @@ fn numbers_that_json_cannot_write_are_refused_by_name() {
     };
     assert_eq!(
         refused(&|q| q.members[1].home[1] = f64::NAN),
-        "y of robot 2 must be a finite number, found NaN"
+        "y of robot 2 must be a finite number of at most 1e100 in size, found NaN"
     );
     assert_eq!(
         refused(&|q| q.members[0].hp_level = Some(f64::INFINITY)),
-        "hp_level of robot 1 must be a finite number, found inf"
+        "hp_level of robot 1 must be a finite number of at most 1e100 in size, found inf"
     );
     assert_eq!(
         refused(&|q| q.tasks[1].place = Some([1.0, f64::NAN])),
-        "the place of task \"hard\" must be two finite numbers, found [1.0, NaN]"
+        "the place of task \"hard\" must be two finite numbers of at most 1e100 in size, found [1.0, NaN]"
     );
     assert_eq!(
         refused(&|q| q.needs[0].weight = f64::NAN),
