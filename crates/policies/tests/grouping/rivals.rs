@@ -40,15 +40,20 @@ pub fn utility(question: &Question, id: u32, task: usize) -> f64 {
     ranks.sort_unstable();
     ranks.dedup();
     let rank = ranks.iter().position(|rank| *rank == question.tasks[task].difficulty).unwrap() + 1;
+    let member = question.members.iter().find(|member| member.id == id).unwrap();
+    let worth = rank as f64 / ranks.len() as f64;
+    worth * strength(question, member) - way(question, member, task)
+}
+
+/// The way of a robot to a task, over the largest one in the question.
+fn way(question: &Question, member: &Member, task: usize) -> f64 {
     let way = |home: [f64; 2], task: usize| {
         let place = question.tasks[task].place.unwrap();
         libm::hypot(home[0] - place[0], home[1] - place[1])
     };
     let tasks = || 0..question.tasks.len();
     let ways = question.members.iter().flat_map(|member| tasks().map(|task| way(member.home, task)));
-    let member = question.members.iter().find(|member| member.id == id).unwrap();
-    let worth = rank as f64 / ranks.len() as f64;
-    worth * strength(question, member) - way(member.home, task) / ways.fold(0.0, f64::max)
+    way(member.home, task) / ways.fold(0.0, f64::max)
 }
 
 pub fn total(question: &Question, assignment: &Assignment) -> f64 {
@@ -159,6 +164,33 @@ fn larger_teams_are_searched_by_swaps_and_say_so() {
             .fold(f64::MAX, f64::min);
         assert!(found <= better + 1e-9, "{policy}: {found}, a swap away {better}");
         assert!(found < measure(&question, &decide("RANDOM", &question).assignment));
+    }
+}
+
+/// No robot gains by a move to another task, by the utility that is written here anew.
+#[test]
+fn grape_is_stable_in_ten_thousand_teams() {
+    let grape = policies::standard().parse("GRAPE").unwrap();
+    for seed in 0..10_000 {
+        let mut question = drawn_question(seed);
+        question.quotas.iter_mut().for_each(|quota| quota.sizes = GroupSizes::Free);
+        let groups = grape.decide(&question).unwrap().assignment.groups;
+        let tasks = question.tasks.len();
+        for member in &question.members {
+            let of_role = question.of_role(member.role).count() as f64;
+            let own = groups.iter().position(|ids| ids.contains(&member.id)).unwrap();
+            let gets = |task: usize| {
+                let is_mate = |id: &&u32| {
+                    **id != member.id && question.of_role(member.role).any(|other| other.id == **id)
+                };
+                let count = groups[task].iter().filter(is_mate).count() as f64 + 1.0;
+                let share = (count + 1.0).log2() / (of_role / tasks as f64 + 1.0).log2() / count;
+                let way = way(&question, member, task);
+                (utility(&question, member.id, task) + way) * share - way
+            };
+            let best = (0..tasks).map(gets).fold(f64::MIN, f64::max);
+            assert!(gets(own) >= best - 1e-9, "seed {seed}, robot {}", member.id);
+        }
     }
 }
 
