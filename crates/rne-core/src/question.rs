@@ -193,7 +193,7 @@ impl From<u64> for RandomSeed {
 }
 
 /// Whether sums and squares of such numbers are finite.
-fn is_usable(number: &f64) -> bool {
+fn is_usable(number: f64) -> bool {
     number.abs() <= 1e100
 }
 
@@ -232,7 +232,7 @@ impl Question {
     }
 
     fn check_task(&self, task: &Task) -> Result<(), QuestionError> {
-        if let Some(place) = task.place.filter(|place| !place.iter().all(is_usable)) {
+        if let Some(place) = task.place.filter(|place| !place.iter().copied().all(is_usable)) {
             return Err(QuestionError::Place { task: task.name.clone(), found: place });
         }
         let required = task.requires.iter().map(|(need, least)| (need.as_str(), *least));
@@ -264,7 +264,7 @@ impl Question {
             ("energy_level", member.energy_level),
             ("hp_level", member.hp_level),
         ];
-        let infinite = |(what, value): (_, Option<f64>)| Some((what, value.filter(|v| !is_usable(v))?));
+        let infinite = |(what, value): (_, Option<f64>)| Some((what, value.filter(|v| !is_usable(*v))?));
         match facts.into_iter().find_map(infinite) {
             Some((what, found)) => Err(QuestionError::NotFinite { what, id, found }),
             None => Ok(()),

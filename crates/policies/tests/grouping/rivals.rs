@@ -184,7 +184,7 @@ fn grape_is_stable_in_ten_thousand_teams() {
                     **id != member.id && question.of_role(member.role).any(|other| other.id == **id)
                 };
                 let count = groups[task].iter().filter(is_mate).count() as f64 + 1.0;
-                let share = (count + 1.0).log2() / (of_role / tasks as f64 + 1.0).log2() / count;
+                let share = libm::log2(count + 1.0) / libm::log2(of_role / tasks as f64 + 1.0) / count;
                 let way = way(&question, member, task);
                 (utility(&question, member.id, task) + way) * share - way
             };
