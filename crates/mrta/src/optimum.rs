@@ -4,9 +4,9 @@
 //! free, and when those tasks are over that others wait for. Of two states with the same set and places,
 //! one that is nowhere later makes the other one needless, so that each set and places have a Pareto set of
 //! times. Groups have no member that could be left out, which loses nothing because no way is longer than a
-//! detour: other problems are not solved. A state is dropped if a bound says that it comes to nothing better than the rule of the earliest
-//! start: each robot has to visit the tasks for which it alone has a skill (Held, Karp 1962), and each task
-//! is followed by its tail.
+//! detour: other problems are not solved. A state is dropped if a bound says that it comes to nothing
+//! better than the rule of the earliest start: each robot has to visit the tasks for which it alone has a
+//! skill (Held, Karp 1962), and each task is followed by its tail.
 //!
 //! Time: exponential in tasks and robots; milliseconds for 8 tasks and 3 robots.
 

@@ -52,7 +52,8 @@ pub(super) fn from_sweep_file(
     check.policies(&policies, file.baseline.as_deref(), !readings.is_empty());
     let seeds = check.seeds(&file);
     check.must_be_sound()?;
-    let base = base.ok_or_else(|| Failure::input(path.display().to_string()))?; // without one there is a problem
+    // Without one there is a problem.
+    let base = base.ok_or_else(|| Failure::input(path.display().to_string()))?;
     let listed = if let Seeds::Listed(list) = &seeds { Some(list.len() as u32) } else { None };
     let parts = Parts {
         name: file.name.clone(),
