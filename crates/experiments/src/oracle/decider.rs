@@ -130,6 +130,7 @@ impl Session for OracleSession {
         let refused = |error: &dyn std::fmt::Display| PolicyError::Other(format!("{NAME}: {error}"));
         let tasks = task_names(trial.scenario());
         let objective = Objective::parse(&self.options.metric, &tasks).map_err(|error| refused(&error))?;
+        let objective = if self.options.pick == Pick::Best { objective } else { objective.opposite() };
         let (start, onwards) = (trial.checkpoint(), &mut self.onwards);
         let horizon = if onwards.is_some() { "trial" } else { "round" };
         let survey = survey(question, &objective, self.options.limit, &[], |batch| {
@@ -140,10 +141,7 @@ impl Session for OracleSession {
         });
         deadline.check()?;
         let survey = survey.map_err(|error| refused(&error))?;
-        let mut ranked = survey.ranked(&objective);
-        if self.options.pick == Pick::Worst {
-            ranked.reverse();
-        }
+        let ranked = survey.ranked(&objective);
         let best = ranked.first().or(survey.evaluations.first().as_ref()).copied();
         let best = best.ok_or_else(|| refused(&"there is no assignment"))?;
         let value =

@@ -49,6 +49,9 @@ pub struct Objective {
     quantity: usize,
     /// The task; all tasks together without one.
     task: Option<usize>,
+    /// Whether the worst value counts as the best.
+    #[serde(skip)]
+    is_opposite: bool,
 }
 
 /// An unknown name of an objective.
@@ -79,17 +82,24 @@ impl Objective {
         let of = |quantity: usize| {
             let name = QUANTITIES[quantity].name;
             if name == "time" {
-                return vec![Self { name: name.to_owned(), quantity, task: None }];
+                return vec![Self { name: name.to_owned(), quantity, task: None, is_opposite: false }];
             }
-            let total = Self { name: format!("{name}.{TOTAL}"), quantity, task: None };
+            let total = Self { name: format!("{name}.{TOTAL}"), quantity, task: None, is_opposite: false };
             let each = tasks.iter().enumerate().map(|(task, of)| Self {
                 name: format!("{name}.{of}"),
                 quantity,
                 task: Some(task),
+                is_opposite: false,
             });
             std::iter::once(total).chain(each).collect()
         };
         (0..QUANTITIES.len()).flat_map(of).collect()
+    }
+
+    /// The objective for which the worst value is the best.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        Self { is_opposite: !self.is_opposite, ..self }
     }
 
     /// Its name.
@@ -121,7 +131,8 @@ impl Objective {
 
     /// Its value, with the sign chosen so that more is better.
     pub fn score(&self, outcome: &Outcome) -> Option<f64> {
-        self.value(outcome).map(|value| if self.is_cost() { -value } else { value })
+        let is_less_better = self.is_cost() != self.is_opposite;
+        self.value(outcome).map(|value| if is_less_better { -value } else { value })
     }
 }
 
@@ -157,6 +168,8 @@ mod tests {
         );
         let score = |name| Objective::parse(name, &tasks).unwrap().score(&outcome()).unwrap();
         assert!(score("energy.easy") < -2.9 && score("rescuees.easy") > 1.9);
+        let opposite = Objective::parse("rescuees.easy", &tasks).unwrap().opposite();
+        assert_eq!((opposite.score(&outcome()), opposite.value(&outcome())), (Some(-2.0), Some(2.0)));
     }
 
     #[test]

@@ -7,16 +7,17 @@ use serde::Serialize;
 use serde_json::json;
 use statistics::{Moments, cautious};
 
-use crate::arguments::{PoliciesArgument, ProgressArguments, ShownArguments, count, one_seed};
+use crate::arguments::{PoliciesArgument, ProgressArguments, ShownArguments, count, limit, one_seed};
 use crate::library;
 use crate::prelude::*;
 
 /// The policy that the others are compared with.
 const DRAW: &str = "RANDOM";
 
-/// The oracle looks at this metric: the rate does not reward rounds that take long.
-const ORACLES: [&str; 2] =
-    ["best=ORACLE(metric: \"rescue_rate\")", "worst=ORACLE(metric: \"rescue_rate\", pick: Worst)"];
+/// The oracles, and which assignment each picks. They look at this metric: the rate does not reward rounds that
+/// take long.
+const ORACLES: [[&str; 2]; 2] = [["best", "Best"], ["worst", "Worst"]];
+const METRIC: &str = "rescue_rate";
 
 /// Rules that the paper compares; they are tried where no others are named.
 const RULES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
@@ -25,14 +26,15 @@ const RULES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A world in which the best and the worst grouping rescue about the same cannot tell rules apart, and a lie costs \
-nothing in it. The best and the worst choice are those of an oracle that plays every assignment to the end of \
-the round and takes the one with the most, or the fewest, rescuees a minute: neither looks further ahead.
+nothing in it. The best and the worst choice are those of an oracle that plays assignments to the end of the \
+round and takes the one with the most, or the fewest, rescuees a minute: neither looks further ahead. Of many \
+assignments it plays a part only (--limit), so that the room is at least what is told.
 
 The folder is that of a sweep, with all of its tables; an interrupted study resumes.
 
 Examples:
   usar study room tunnel
-  usar study room scenarios/paper.ron --trials 100 --policies RNE,DIS")]
+  usar study room scenarios/paper.ron --trials 100 --policies RNE,DIS --limit 240   # every assignment")]
 pub(crate) struct Arguments {
     /// Scenario (RON)
     #[arg(value_name = "FILE", value_parser = library::path)]
@@ -40,6 +42,9 @@ pub(crate) struct Arguments {
     /// Trials of each policy, in each case or candidate
     #[arg(long, default_value_t = 32, value_parser = count(8..=1_000_000))]
     trials: u32,
+    /// Most assignments of a decision to play, or problems to solve
+    #[arg(long, default_value_t = 24, value_parser = limit())]
+    limit: u64,
     #[command(flatten)]
     policies: PoliciesArgument,
     /// Seed of the first trial [default: the file's]
@@ -74,10 +79,11 @@ impl Arguments {
         let folder = self.progress.finished(&place, experiment)?;
         let rows = rows(&folder)?;
         if self.shown.is_json() {
-            return print_json(&json!({"rows": rows}));
+            return print_json(&json!({"limit": self.limit, "rows": rows}));
         }
         let words = format!("rescuees.total of {} trials", self.trials);
         writeln!(out, "{}: {words}, paired by seed; minus {DRAW}", folder.experiment().name)?;
+        writeln!(out, "best and worst: of at most {} assignments a decision", self.limit)?;
         let mut table = headed(["policy", "mean", "minus a draw", "95 % interval", "in %"]);
         for row in &rows {
             table.add_row([
@@ -93,7 +99,11 @@ impl Arguments {
 
     fn experiment(&self, registry: &Registry) -> Result<Experiment, Failure> {
         let rules = self.policies.list().unwrap_or_else(|| RULES.map(str::to_owned).to_vec());
-        let others = [DRAW].into_iter().chain(ORACLES).map(str::to_owned);
+        let limit = self.limit;
+        let oracle = |[label, pick]: [&str; 2]| {
+            format!("{label}=ORACLE(metric: \"{METRIC}\", pick: {pick}, limit: {limit})")
+        };
+        let others = std::iter::once(DRAW.to_owned()).chain(ORACLES.map(oracle));
         let policies = Some(rules.into_iter().filter(|rule| rule != DRAW).chain(others).collect());
         let (trials, first_seed) = (Some(self.trials), self.first_seed);
         let overrides = Overrides { policies, trials, first_seed, ..Overrides::default() };
