@@ -320,10 +320,7 @@ impl Event {
             Statement::DebrisLies { debris, .. } => Some(Self::DebrisDiscovered { robot, debris }),
             Statement::ZoneIs { zone, .. } => Some(Self::ZoneDiscovered { robot, zone }),
             Statement::RescueeWaits { rescuee, .. } => Some(Self::Sighted { robot, rescuee }),
-            Statement::RescueeIsGone { .. }
-            | Statement::IAm(_)
-            | Statement::TaskIs { .. }
-            | Statement::WreckLies { .. } => None,
+            Statement::RescueeIsGone { .. } | Statement::TaskIs { .. } | Statement::WreckLies { .. } => None,
         }
     }
 }

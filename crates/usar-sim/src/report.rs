@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::RadiationZone;
 use crate::ids::{RescueeId, RobotId};
-use crate::robot::Robot;
 
 /// A report.
 #[derive(Clone, Serialize, Deserialize)]
@@ -77,8 +76,6 @@ pub enum Statement {
         /// The rescuee.
         rescuee: RescueeId,
     },
-    /// The sender's own state.
-    IAm(Robot),
     /// A task is open or closed, and so many rescuees wait there.
     TaskIs {
         /// The task.

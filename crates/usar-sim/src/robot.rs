@@ -83,9 +83,14 @@ impl Robot {
     }
 
     /// Takes over the state of another. Its fixed properties stay.
-    pub(crate) fn be_as(&mut self, mut other: Self) {
-        std::mem::swap(&mut self.model, &mut other.model);
-        *self = other;
+    pub(crate) fn be_as(&mut self, other: &Self) {
+        let Self { model: _, position, velocity, energy, hp, resources, load, condition, wreck_at } = other;
+        (self.position, self.velocity) = (*position, *velocity);
+        (self.energy, self.hp, self.resources) = (*energy, *hp, *resources);
+        (self.condition, self.wreck_at) = (*condition, *wreck_at);
+        if self.load != *load {
+            self.load.clone_from(load);
+        }
     }
 
     /// Whether it is in the same state as another. Their fixed properties are not compared.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::OnceLock;
 
+use parry2d::math::Vector;
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +12,7 @@ use super::news::{News, Opening, Seen};
 use super::table::Table;
 use crate::geometry::{Outline, RadiationZone};
 use crate::hash::part;
+use crate::ids::RescueeId;
 use crate::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap};
 use crate::report::{Report, Statement};
 
@@ -47,6 +49,8 @@ struct Maps {
     obstacles: Vec<ObstacleMap>,
     /// The radiation zones that are held to be on.
     zones_on: Vec<(u32, RadiationZone)>,
+    /// The rescuees that are held to wait, in order.
+    waiting: Vec<(RescueeId, Vector)>,
 }
 
 impl Belief {
@@ -60,7 +64,7 @@ impl Belief {
             tasks: Table::default(),
             pool: 0,
             news: Vec::new(),
-            maps: Maps { obstacles: inflation.maps(), zones_on: Vec::new() },
+            maps: Maps { obstacles: inflation.maps(), ..Maps::default() },
             digest: OnceLock::new(),
         }
     }
@@ -76,6 +80,14 @@ impl Belief {
     /// The radiation zones that are held to be on, with their numbers.
     pub fn zones_on(&self) -> &[(u32, RadiationZone)] {
         &self.maps.zones_on
+    }
+
+    /// The rescuees with numbers in a range that are held to wait, in order, and where.
+    pub(crate) fn waiting_among(&self, numbers: &Range<usize>) -> &[(RescueeId, Vector)] {
+        let waiting = &self.maps.waiting;
+        let [from, to] =
+            [numbers.start, numbers.end].map(|end| waiting.partition_point(|(id, _)| id.index() < end));
+        &waiting[from..to]
     }
 
     /// Number of rescuees that are believed to wait in a task with these rescuees: as many as were said to,
@@ -122,7 +134,6 @@ impl Belief {
                 let known = KnownTask { open: *open, waiting: *waiting, at_step };
                 self.hear_of_task(task.index(), known)
             }
-            Statement::IAm(_) => false, // for the whole team
             Statement::WreckLies { robot, at, radius, is_aerial } => {
                 let known = KnownWreck { at: *at, radius: *radius, is_aerial: *is_aerial, at_step };
                 self.hear_of_wreck(robot.0, known)
@@ -166,6 +177,10 @@ impl Belief {
         let is_newer = self.rescuees.get(number).is_none_or(|known| known.at_step < heard.at_step);
         if is_newer {
             self.rescuees.set(number, heard);
+            let (waiting, id) = (&mut self.maps.waiting, RescueeId(number as u32));
+            let place = waiting.partition_point(|(other, _)| *other < id);
+            let is_known = waiting.get(place).is_some_and(|(other, _)| *other == id);
+            waiting.splice(place..place + usize::from(is_known), heard.waits_at.map(|at| (id, at)));
         }
         is_newer
     }
@@ -237,7 +252,12 @@ impl Belief {
             }
         }
         let on = self.zones.iter().filter(|(_, known)| known.on);
-        self.maps = Maps { obstacles, zones_on: on.map(|(number, known)| (number, known.disc)).collect() };
+        let waits = |(number, known): (u32, &KnownRescuee)| Some((RescueeId(number), known.waits_at?));
+        self.maps = Maps {
+            obstacles,
+            zones_on: on.map(|(number, known)| (number, known.disc)).collect(),
+            waiting: self.rescuees.iter().filter_map(waits).collect(),
+        };
     }
 
     /// Adds an obstacle to the maps of all classes. The news use its outline for the largest robots.

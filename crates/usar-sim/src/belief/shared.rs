@@ -69,15 +69,15 @@ impl Beliefs {
         holder.map_or(&self.home, |holder| &self.field[holder.0 as usize])
     }
 
-    /// Lets a robot's report of itself be heard by the whole team. An older one than the last changes
-    /// nothing.
-    pub(crate) fn hear_of_self(&mut self, id: RobotId, robot: Robot, at_step: u64) {
-        let last = &mut self.said_at[id.index()];
-        if *last <= at_step {
-            *last = at_step;
-            let known = &mut self.team[id.index()];
-            self.ledger.note_levels(id, [known.energy, known.hp], [robot.energy, robot.hp]);
-            known.be_as(robot);
+    /// The whole team hears at once what robots say of themselves: their places, motions, levels, resources
+    /// and loads, where they are not as they were said to be.
+    pub(crate) fn hear_of_selves(&mut self, robots: &[Robot], at_step: u64) {
+        for ((robot, known), said_at) in robots.iter().zip(&mut self.team).zip(&mut self.said_at) {
+            if !robot.is_as(known) {
+                *said_at = at_step;
+                self.ledger.note_levels(robot.id, [known.energy, known.hp], [robot.energy, robot.hp]);
+                known.be_as(robot);
+            }
         }
     }
 

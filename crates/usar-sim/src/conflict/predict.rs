@@ -66,14 +66,19 @@ impl Neighbours {
         clear(&mut self.lists, movers.len());
         let lists = &mut self.lists;
         for (at, (a, from)) in self.by_x.iter().zip(&self.spots).enumerate() {
+            let a_wishes = movers[*a].wishes_to_move();
             for (b, to) in self.by_x[at + 1..].iter().zip(&self.spots[at + 1..]) {
                 let apart = to.at - from.at;
                 if apart.x > range {
                     break;
                 }
                 if from.aerial == to.aerial && apart.length_squared() <= range * range {
-                    lists[*a].extend(movers[*a].wishes_to_move().then_some(*b));
-                    lists[*b].extend(movers[*b].wishes_to_move().then_some(*a));
+                    if a_wishes {
+                        lists[*a].push(*b);
+                    }
+                    if movers[*b].wishes_to_move() {
+                        lists[*b].push(*a);
+                    }
                 }
             }
         }

@@ -259,6 +259,9 @@ impl Step<'_, '_, SetsModel, Sets> {
     fn pass(&self, i: usize, preferred: Vector) -> Directive {
         let (me, near, stands) = (&self.movers[i], self.scratch.neighbours.of(i), &self.scratch.stands);
         let blockers = near.iter().filter(|j| stands[**j]).map(|j| me.sees(*j, self.movers));
+        if blockers.clone().next().is_none() {
+            return Directive::Proceed(preferred.normalize_or_zero() * preferred.length());
+        }
         let discs = blockers.clone().map(|(_, center, touch)| (center, touch));
         let mut surroundings = Surroundings {
             preferred,

@@ -139,12 +139,11 @@ impl Claims {
         holder: Holder,
         scene: &'s Scene,
     ) -> impl Iterator<Item = Offer> + use<'s> {
-        let believed = &scene.beliefs.of(Some(holder)).rescuees;
-        let is_free = |i: &usize| self.by[*i].is_none() && !self.given_up[*i];
-        let waiting = move |i: usize| {
-            Some(Offer { holder, rescuee: RescueeId(i as u32), at: believed.get(i)?.waits_at? })
-        };
-        let own = scene.model.tasks[task.index()].rescuees.clone();
-        own.chain(scene.model.phantoms_of(task)).filter(is_free).filter_map(waiting)
+        let belief = scene.beliefs.of(Some(holder));
+        let own = belief.waiting_among(&scene.model.tasks[task.index()].rescuees);
+        let phantoms = belief.waiting_among(&scene.model.phantoms_of(task));
+        let is_free = |id: &RescueeId| self.by[id.index()].is_none() && !self.given_up[id.index()];
+        let offer = move |(rescuee, at): &(RescueeId, Vector)| Offer { holder, rescuee: *rescuee, at: *at };
+        own.iter().chain(phantoms).filter(move |(id, _)| is_free(id)).map(offer)
     }
 }

@@ -5,7 +5,6 @@
 
 pub(crate) mod base;
 mod debris;
-pub(crate) mod oneself;
 mod radiation;
 mod rescuees;
 pub(crate) mod team_mates;

@@ -15,8 +15,7 @@ impl State {
         let (mission, mut scene) = self.scene(model);
         let crew = &mission.crew;
         mission.with_telemetry(&mut scene, |telemetry, now, log| {
-            let is_of_a_thing = |report: &&Report| !matches!(report.says, Statement::IAm(_));
-            for report in noticed.iter().filter(is_of_a_thing) {
+            for report in noticed {
                 let Speaker::Robot(robot) = report.from else { continue };
                 telemetry.tell_mates(report, crew.mates_of(robot), now, log);
             }

@@ -19,10 +19,10 @@ use crate::model::Model;
 use crate::navigation::{Navigator, Outlook};
 use crate::planning::Meshes;
 use crate::record::DecisionRecord;
-use crate::report::{Report, Speaker, Statement};
+use crate::report::Report;
 use crate::robot::{Robot, STANDING_MPS};
 use crate::scenario::LevelSource;
-use crate::sensors::{base, look_around, oneself, team_mates};
+use crate::sensors::{base, look_around, team_mates};
 use crate::tally::{Tally, delay_cause};
 use crate::telemetry::Telemetry;
 use crate::world::World;
@@ -165,9 +165,9 @@ impl State {
         self.hear(model, heard);
     }
 
-    /// Robots notice their own state, and say so.
+    /// Robots notice their own state, and say so to the whole team.
     pub(super) fn feel(&mut self, model: &Model, heard: &mut Vec<Report>) {
-        oneself::sense(&self.world.robots, &self.beliefs.team, self.step, &mut self.sent);
+        self.beliefs.hear_of_selves(&self.world.robots, self.step);
         self.hear(model, heard);
     }
 
@@ -179,15 +179,8 @@ impl State {
         self.hear_mates(model);
         let Self { mission, beliefs, log, .. } = self;
         for report in heard.drain(..) {
-            match report {
-                Report { from: Speaker::Robot(id), says: Statement::IAm(robot), at_step, .. } => {
-                    beliefs.hear_of_self(id, robot, at_step);
-                }
-                report => {
-                    let is_news = beliefs.hear(&report, |robot| mission.crew.holder_of(robot, model));
-                    log.extend(Event::of_report(&report).filter(|_| is_news));
-                }
-            }
+            let is_news = beliefs.hear(&report, |robot| mission.crew.holder_of(robot, model));
+            log.extend(Event::of_report(&report).filter(|_| is_news));
         }
     }
 

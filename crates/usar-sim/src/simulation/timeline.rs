@@ -11,7 +11,7 @@ use crate::ids::RobotId;
 use crate::model::{Action, DebrisModel, Model};
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::Robot;
-use crate::sensors::{base, oneself};
+use crate::sensors::base;
 use crate::world::{RescueeState, World};
 
 /// Debris falls or closes only if no robot may come nearer than this within a few steps, in metres.
@@ -167,7 +167,7 @@ impl State {
         self.log.push(Event::Damaged { robot: id, energy, hp });
         spend(robot, [energy, hp], model.costs.unit, &mut self.listeners.metrics);
         self.log.extend(last_event(robot, &model.mission));
-        self.sent.push(oneself::report(robot, self.step));
+        self.beliefs.hear_of_selves(&self.world.robots, self.step);
     }
 }
 
