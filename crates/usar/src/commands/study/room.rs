@@ -1,5 +1,6 @@
 //! `usar study room`: how much grouping matters in a world.
 
+use experiments::comparison::short;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::folder::Folder;
 use reports::table::{between, headed, mean, number, or_dash, right};
@@ -8,6 +9,7 @@ use serde_json::json;
 use statistics::{Moments, cautious};
 
 use crate::arguments::{PoliciesArgument, ProgressArguments, ShownArguments, count, limit, one_seed};
+use crate::input::read_sweep;
 use crate::library;
 use crate::prelude::*;
 
@@ -30,15 +32,17 @@ nothing in it. The best and the worst choice are those of an oracle that plays a
 round and takes the one with the most, or the fewest, rescuees a minute: neither looks further ahead. Of many \
 assignments it plays a part only (--limit), so that the room is at least what is told.
 
-The folder is that of a sweep, with all of its tables; an interrupted study resumes.
+The folder is that of a sweep, with all of its tables; an interrupted study resumes. Folders of several worlds \
+make one table with a row for each.
 
 Examples:
   usar study room tunnel
-  usar study room scenarios/paper.ron --trials 100 --policies RNE,DIS --limit 240   # every assignment")]
+  usar study room scenarios/paper.ron --trials 100 --policies RNE,DIS --limit 240   # every assignment
+  usar study room results/room-*")]
 pub(crate) struct Arguments {
-    /// Scenario (RON)
-    #[arg(value_name = "FILE", value_parser = library::path)]
-    file: PathBuf,
+    /// Scenario (RON), or folders of finished studies
+    #[arg(value_name = "FILE|DIR", required = true, value_parser = library::path)]
+    files: Vec<PathBuf>,
     /// Trials of each policy, in each case or candidate
     #[arg(long, default_value_t = 32, value_parser = count(8..=1_000_000))]
     trials: u32,
@@ -59,6 +63,14 @@ pub(crate) struct Arguments {
     shown: ShownArguments,
 }
 
+/// What the policies rescue in a world.
+#[derive(Serialize)]
+struct World {
+    world: String,
+    trials: u32,
+    policies: Vec<Row>,
+}
+
 /// A policy beside the draw.
 #[derive(Serialize)]
 struct Row {
@@ -73,31 +85,32 @@ struct Row {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let experiment = self.experiment(registry)?;
-        let named = Path::new("results").join(format!("room-{}", experiment.name));
-        let place = self.out.clone().unwrap_or(named);
-        let folder = self.progress.finished(&place, experiment)?;
-        let rows = rows(&folder)?;
-        if self.shown.is_json() {
-            return print_json(&json!({"limit": self.limit, "rows": rows}));
+        match self.files.as_slice() {
+            [file] if !file.is_dir() => {
+                let experiment = self.experiment(file, registry)?;
+                let named = Path::new("results").join(format!("room-{}", experiment.name));
+                let place = self.out.clone().unwrap_or(named);
+                self.print(&[self.progress.finished(&place, experiment)?], out)
+            }
+            folders => {
+                let read = |folder: &PathBuf| read_sweep(folder, registry);
+                self.print(&folders.iter().map(read).collect::<Result<Vec<_>, _>>()?, out)
+            }
         }
-        let words = format!("rescuees.total of {} trials", self.trials);
-        writeln!(out, "{}: {words}, paired by seed; minus {DRAW}", folder.experiment().name)?;
-        writeln!(out, "best and worst: of at most {} assignments a decision", self.limit)?;
-        let mut table = headed(["policy", "mean", "minus a draw", "95 % interval", "in %"]);
-        for row in &rows {
-            table.add_row([
-                row.policy.as_str().into(),
-                mean(row.mean),
-                number(row.difference),
-                right(&between(row.interval)),
-                right(&or_dash(row.percent, |percent| format!("{percent:+.1}"))),
-            ]);
-        }
-        print_table(out, &table)
     }
 
-    fn experiment(&self, registry: &Registry) -> Result<Experiment, Failure> {
+    fn print(&self, folders: &[Folder], out: &mut dyn Write) -> Result<(), Failure> {
+        let worlds = folders.iter().map(World::of).collect::<Result<Vec<_>, _>>()?;
+        if self.shown.is_json() {
+            return print_json(&json!({ "worlds": worlds }));
+        }
+        for World { world, trials, .. } in &worlds {
+            writeln!(out, "{world}: rescuees.total of {trials} trials, paired by seed; minus {DRAW}")?;
+        }
+        if let [world] = worlds.as_slice() { print_one(world, out) } else { print_all(&worlds, out) }
+    }
+
+    fn experiment(&self, file: &Path, registry: &Registry) -> Result<Experiment, Failure> {
         let rules = self.policies.list().unwrap_or_else(|| RULES.map(str::to_owned).to_vec());
         let limit = self.limit;
         let oracle = |[label, pick]: [&str; 2]| {
@@ -107,8 +120,54 @@ impl Arguments {
         let policies = Some(rules.into_iter().filter(|rule| rule != DRAW).chain(others).collect());
         let (trials, first_seed) = (Some(self.trials), self.first_seed);
         let overrides = Overrides { policies, trials, first_seed, ..Overrides::default() };
-        Experiment::load(&self.file, &overrides, registry)
+        Experiment::load(file, &overrides, registry)
     }
+}
+
+impl World {
+    fn of(folder: &Folder) -> Result<Self, Failure> {
+        let experiment = folder.experiment();
+        let (world, trials, policies) = (experiment.name.clone(), experiment.trials, rows(folder)?);
+        Ok(Self { world, trials, policies })
+    }
+}
+
+fn print_one(world: &World, out: &mut dyn Write) -> Result<(), Failure> {
+    let mut table = headed(["policy", "mean", "minus a draw", "95 % interval", "in %"]);
+    for row in &world.policies {
+        table.add_row([
+            row.policy.as_str().into(),
+            mean(row.mean),
+            number(row.difference),
+            right(&between(row.interval)),
+            right(&or_dash(row.percent, |percent| format!("{percent:+.1}"))),
+        ]);
+    }
+    print_table(out, &table)
+}
+
+/// A row for each world: what a draw rescues, and what each policy has above it.
+fn print_all(worlds: &[World], out: &mut dyn Write) -> Result<(), Failure> {
+    let mut others: Vec<&str> = Vec::new();
+    for row in worlds.iter().flat_map(|world| &world.policies) {
+        if row.policy != DRAW && !others.contains(&&*row.policy) {
+            others.push(&row.policy);
+        }
+    }
+    let mut table = headed(["world", DRAW].into_iter().chain(others.iter().copied()).collect::<Vec<_>>());
+    for world in worlds {
+        let of = |label: &str| world.policies.iter().find(|row| row.policy == label);
+        let above = |label: &&str| {
+            let row = of(label).filter(|row| row.difference.is_some());
+            right(&row.map_or("-".to_owned(), |row| match row.interval {
+                Some(_) => format!("{} ({})", or_dash(row.difference, short), between(row.interval)),
+                None => or_dash(row.difference, short),
+            }))
+        };
+        let draw = mean(of(DRAW).and_then(|row| row.mean));
+        table.add_row([world.world.as_str().into(), draw].into_iter().chain(others.iter().map(above)));
+    }
+    print_table(out, &table)
 }
 
 fn rows(folder: &Folder) -> Result<Vec<Row>, Failure> {
@@ -117,7 +176,7 @@ fn rows(folder: &Folder) -> Result<Vec<Row>, Failure> {
     let value = |policy: usize, trial: u32| folder.value((0, policy, trial), metric);
     let values = |policy: usize| (1..=experiment.trials).filter_map(move |trial| value(policy, trial));
     let draw = experiment.policies.iter().position(|policy| policy.label == DRAW);
-    let draw = draw.ok_or_else(|| Failure::run("the fair draw was not run"))?;
+    let draw = draw.ok_or_else(|| Failure::input(format!("{}: has no {DRAW}", experiment.name)))?;
     let of_draw = Moments::of(&values(draw).collect::<Vec<_>>()).mean;
     let row = |(place, label): (usize, &str)| {
         let pairs =
