@@ -1,5 +1,6 @@
 //! Reports, the medium and lies: what they change, and what they leave as it is.
 
+use experiments::metric::Catalogue;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Normal};
@@ -350,4 +351,33 @@ fn mates_see_that_a_robot_is_slower_than_it_says() {
         assert!((measured - truly(robot)).abs() < 12.0, "robot {robot}: {measured}");
     }
     assert!(seen >= 8, "{seen}");
+}
+
+/// A robot that begins to lie after five minutes is honest in the rounds before.
+#[test]
+fn until_its_lie_begins_a_liar_is_judged_as_honest() {
+    let text = std::fs::read_to_string(crate::support::root().join("scenarios/trust/tunnel.ron")).unwrap();
+    let lies = "(\n    deceit: [(who: Robots([3]), lie: Exaggerate(by: 1), on: [Hp], since_s: 300)],";
+    let text = text.replacen('(', lies, 1).replace("duration_s: 1800.0", "duration_s: 900.0");
+    let scenario = Scenario::parse(&text, "tunnel.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let record = run(&scenario, "DIS <- Hmm", 1);
+    let metrics = Catalogue::of(&scenario);
+    let value = |name: &str| metrics[metrics.named(name).unwrap()].value(&record).unwrap();
+    let start_s = |round: u32| record.rounds.iter().find(|it| it.round == round).unwrap().start_s;
+    let (mut before, mut after, mut squares, mut detected) = (0.0, 0.0, Vec::new(), None);
+    for made in &record.decisions {
+        let is_lying = start_s(made.question.round) >= 300.0;
+        *(if is_lying { &mut after } else { &mut before }) += 1.0;
+        for (member, it) in made.question.members.iter().zip(made.decision.believed.as_ref().unwrap()) {
+            let is_honest = !(is_lying && member.id == 3);
+            squares.push((it.trust - f64::from(u8::from(is_honest))).powi(2));
+            if !is_honest && it.trust < 0.5 && detected.is_none() {
+                detected = Some(after - 1.0);
+            }
+        }
+    }
+    assert!(before >= 2.0 && after >= 2.0, "{before} rounds before it lies, {after} after");
+    let brier = squares.iter().sum::<f64>() / squares.len() as f64;
+    assert!((value("trust_brier") - brier).abs() < 1e-12, "{} {brier}", value("trust_brier"));
+    assert!((value("rounds_to_detect") - detected.unwrap_or(after)).abs() < 1e-12);
 }

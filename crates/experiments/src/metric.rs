@@ -130,8 +130,8 @@ const OF_REPORTS: &[Declaration] = &[
     whole("trust_ece", "", belief::trust_ece).lower()
         .means("The expected calibration error of the same, in ten bins."),
     whole("rounds_to_detect", "", belief::rounds_to_detect).lower()
-        .means("Rounds before a liar's trust falls below 0.5, on average over liars. One that is never detected \
-            counts with all rounds of the trial: the mean is censored there."),
+        .means("Rounds from the first in which a robot lies until its trust falls below 0.5, on average over liars. \
+            One that is never detected counts with all of these: the mean is censored there."),
     whole("false_exclusions", "", belief::false_exclusions).lower()
         .means("How often an honest robot was left at home by a policy with an estimator."),
 ];

@@ -7,7 +7,7 @@ use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
 use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
-use crate::model::{Model, TelemetryModel};
+use crate::model::{Liar, Model, TelemetryModel};
 use crate::robot::{Condition, Robot};
 use crate::tally::Tally;
 use crate::telemetry::{Ends, Heard, Link, Telemetry, known, named, true_levels};
@@ -138,8 +138,8 @@ pub struct HeardRecord {
     pub extents: Vec<Extent>,
     /// The links on which anything was sent.
     pub links: Vec<LinkRecord>,
-    /// Ids of the robots that tell a lie, sooner or later.
-    pub liars: Vec<u32>,
+    /// The robots that tell a lie, sooner or later.
+    pub liars: Vec<Liar>,
 }
 
 /// A question with its history and its evidence, of which it was recorded without.

@@ -3,6 +3,7 @@
 
 use rne_core::{Estimate, Member};
 use statistics::scores::{Forecast, area_under_curve, brier, calibration_error, crps, log_score, tau_b};
+use usar_sim::model::Liar;
 use usar_sim::record::{DecisionRecord, HeardRecord, TrialRecord};
 
 /// A robot with less trust than this counts as detected.
@@ -68,26 +69,31 @@ pub(super) fn trust_ece(record: &TrialRecord) -> Option<f64> {
     calibration_error(&forecasts(record)?)
 }
 
-/// Mean number of rounds until a liar has little trust. One that is never detected counts with all rounds.
+/// Mean number of rounds until a liar has little trust, from the first round on in which it lies. One that is
+/// never detected counts with all of these.
 pub(super) fn rounds_to_detect(record: &TrialRecord) -> Option<f64> {
     let liars = &heard(record)?.liars;
     judged(record).next()?;
-    let rounds = record.decisions.len();
-    let until = |liar: &u32| {
+    let until = |liar: &Liar| {
         let is_detected = |made: &DecisionRecord| {
-            pairs(made).any(|(member, it)| member.id == *liar && it.trust < DETECTED_BELOW)
+            pairs(made).any(|(member, it)| member.id == liar.robot && it.trust < DETECTED_BELOW)
         };
-        record.decisions.iter().position(is_detected).unwrap_or(rounds) as f64
+        let lied: Vec<&DecisionRecord> =
+            record.decisions.iter().filter(|made| asked_at_s(record, made) >= liar.since_s).collect();
+        let rounds = lied.iter().position(|made| is_detected(made)).unwrap_or(lied.len());
+        (!lied.is_empty()).then_some(rounds as f64)
     };
-    mean(liars.iter().map(until))
+    mean(liars.iter().filter_map(until))
 }
 
 /// How often an honest robot was left at home by a policy that judges robots.
 pub(super) fn false_exclusions(record: &TrialRecord) -> Option<f64> {
-    let liars = &heard(record)?.liars;
+    heard(record)?;
     judged(record).next()?;
-    let of =
-        |made: &DecisionRecord| made.decision.assignment.idle.iter().filter(|id| !liars.contains(id)).count();
+    let of = |made: &DecisionRecord| {
+        let idle = made.decision.assignment.idle.iter();
+        idle.filter(|id| !lies(record, made, **id)).count()
+    };
     Some(judged(record).map(of).sum::<usize>() as f64)
 }
 
@@ -107,13 +113,28 @@ fn pairs(made: &DecisionRecord) -> impl Iterator<Item = (&Member, &Estimate)> {
 
 /// Trust as a forecast that a robot is honest, for each member of each decision.
 fn forecasts(record: &TrialRecord) -> Option<Vec<Forecast>> {
-    let liars = &heard(record)?.liars;
-    let of = |(member, it): (&Member, &Estimate)| Forecast {
-        probability: it.trust,
-        was_so: !liars.contains(&member.id),
+    heard(record)?;
+    let of = |made| {
+        pairs(made).map(|(member, it): (&Member, &Estimate)| Forecast {
+            probability: it.trust,
+            was_so: !lies(record, made, member.id),
+        })
     };
-    let all: Vec<Forecast> = record.decisions.iter().flat_map(pairs).map(of).collect();
+    let all: Vec<Forecast> = record.decisions.iter().flat_map(of).collect();
     (!all.is_empty()).then_some(all)
+}
+
+/// Whether a robot lies, or has lied, when a decision is made. Until its lie begins, a liar is honest.
+fn lies(record: &TrialRecord, made: &DecisionRecord, robot: u32) -> bool {
+    let liars = record.heard.iter().flat_map(|heard| &heard.liars);
+    let at_s = asked_at_s(record, made);
+    liars.into_iter().any(|liar| liar.robot == robot && liar.since_s <= at_s)
+}
+
+/// When a decision was asked for, in seconds.
+fn asked_at_s(record: &TrialRecord, made: &DecisionRecord) -> f64 {
+    let round = record.rounds.iter().find(|round| round.round == made.question.round);
+    round.map_or(record.time_s, |round| round.start_s)
 }
 
 /// All levels that were believed, in trials with reports.

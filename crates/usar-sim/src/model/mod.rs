@@ -31,7 +31,7 @@ pub use rescuee::RescueeModel;
 pub use right_of_way::{Patience, ReciprocalModel, RetreatModel, RightOfWayModel, RuleKind, SetsModel};
 pub use robot::{RobotModel, RobotSpec};
 pub use task::TaskModel;
-pub use telemetry::{BlackoutModel, LieModel, MediumModel, TelemetryModel};
+pub use telemetry::{BlackoutModel, Liar, LieModel, MediumModel, TelemetryModel};
 pub use timeline::{Action, Due};
 
 use crate::geometry::{RadiationZone, vector};

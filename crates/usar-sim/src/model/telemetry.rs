@@ -5,6 +5,7 @@ use std::sync::Arc;
 use parry2d::math::Vector;
 use rand::RngExt;
 use rne_core::{Expected, NeedId};
+use serde::{Deserialize, Serialize};
 
 use super::{Layout, RobotModel};
 use crate::geometry::{Outline, vector};
@@ -38,13 +39,22 @@ pub struct TelemetryModel {
     pub lies: Vec<LieModel>,
     /// For each robot, the lies that it tells by the scenario.
     pub told_by: Vec<Vec<usize>>,
-    /// For each robot, whether it tells a lie in this trial, sooner or later.
-    pub is_liar: Vec<bool>,
+    /// For each robot, when its first lie begins in this trial, in seconds; none for an honest robot.
+    pub lies_since_s: Vec<Option<f64>>,
     /// Whether any lie makes up rescuees.
     pub has_phantoms: bool,
     /// What the base expects of energy and of health before the first report. A robot that was never heard
     /// counts with the means.
     pub initial: [Expected; 2],
+}
+
+/// A robot that tells a lie.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Liar {
+    /// The robot.
+    pub robot: u32,
+    /// When its first lie begins, in seconds.
+    pub since_s: f64,
 }
 
 /// A lie, with what it is about by number.
@@ -113,7 +123,6 @@ impl TelemetryModel {
         if !scenario.goes_by_reports() {
             return None;
         }
-        let events = || scenario.timeline.iter().map(|moment| &moment.event);
         let rules = scenario.reports.clone().unwrap_or_default();
         let gauges = |name: &String| {
             let gauges = rules.sensors.get(name).copied().unwrap_or_default();
@@ -126,10 +135,13 @@ impl TelemetryModel {
                 told_by[id.index()].push(number);
             }
         }
-        let mut is_liar: Vec<bool> = told_by.iter().map(|told: &Vec<usize>| !told.is_empty()).collect();
-        for event in events() {
-            if let Happening::RobotLies { robot, .. } = event {
-                is_liar[*robot as usize] = true;
+        let since = |number: &usize| scenario.deceit[*number].since_s;
+        let first = |told: &Vec<usize>| told.iter().map(since).reduce(f64::min);
+        let mut lies_since_s: Vec<Option<f64>> = told_by.iter().map(first).collect();
+        for moment in &scenario.timeline {
+            if let Happening::RobotLies { robot, .. } = moment.event {
+                let since = &mut lies_since_s[robot as usize];
+                *since = Some(since.map_or(moment.at_s, |since| since.min(moment.at_s)));
             }
         }
         let levels = scenario.initial_levels;
@@ -146,7 +158,7 @@ impl TelemetryModel {
             medium: scenario.medium.as_ref().map(|rules| MediumModel::compile(rules, layout, robots)),
             lies,
             told_by,
-            is_liar,
+            lies_since_s,
             initial: [levels.energy, levels.hp].map(|of| Expected { mean: of.mean, sd: of.sd }),
         })
     }
@@ -156,14 +168,15 @@ impl TelemetryModel {
         self.initial.map(|expected| expected.mean)
     }
 
-    /// Ids of the robots that tell a lie, sooner or later.
-    pub fn liars(&self) -> Vec<u32> {
-        (0..).zip(&self.is_liar).filter(|(_, lies)| **lies).map(|(id, _)| id).collect()
+    /// The robots that tell a lie, sooner or later.
+    pub fn liars(&self) -> Vec<Liar> {
+        let liar = |(robot, since): (u32, &Option<f64>)| Some(Liar { robot, since_s: (*since)? });
+        (0..).zip(&self.lies_since_s).filter_map(liar).collect()
     }
 
     /// Whether a robot is one of these mates.
     pub fn is_of(&self, mates: Mates, robot: RobotId) -> bool {
-        let is_liar = self.is_liar[robot.index()];
+        let is_liar = self.lies_since_s[robot.index()].is_some();
         match mates {
             Mates::Honest => !is_liar,
             Mates::Liars => is_liar,
