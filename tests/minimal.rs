@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use parry2d::math::Vector;
 use usar_sim::belief::Belief;
-use usar_sim::planning::{Meshes, Query};
+use usar_sim::planning::Query;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::{PriorityRule, Scenario, ScenarioFile};
 use usar_sim::simulation::Simulation;
@@ -54,8 +54,7 @@ fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
     (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed()).for_each(|i| {
         known.hear(&lies(i, &world.debris[i].outline(), 0));
     });
-    let mut meshes = Meshes::default();
-    let mut time = |errand: &usar_sim::scenario::Errand| {
+    let time = |errand: &usar_sim::scenario::Errand| {
         let robot = &world.robots[errand.robot as usize];
         let mut from = robot.home;
         let mut length = 0.0;
@@ -72,13 +71,12 @@ fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
                 in_the_way: &[],
                 zones: &[],
             };
-            length +=
-                trial.model().planner.route(&query, &mut meshes).map_or(0.0, |route| route.length(from));
+            length += trial.model().planner.route(&query).map_or(0.0, |route| route.length(from));
             from = to;
         }
         f64::from(length) / robot.speed()
     };
-    scenario.errands.iter().map(&mut time).fold(0.0, f64::max)
+    scenario.errands.iter().map(time).fold(0.0, f64::max)
 }
 
 fn summary(record: &TrialRecord) -> String {

@@ -10,7 +10,7 @@ use usar_sim::belief::Belief;
 use usar_sim::geometry::{Outline, RadiationZone};
 use usar_sim::model::{Layout, Model};
 use usar_sim::navigation::{Goal, Navigator, Outlook};
-use usar_sim::planning::{Inflation, KnownObstacle, Meshes, ObstacleKey, ObstacleMap, Planner, Query, Route};
+use usar_sim::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query, Route};
 use usar_sim::robot::Robot;
 use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::world::World;
@@ -130,7 +130,6 @@ fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
     // One planner for all maps: it keeps meshes, and must tell the pieces of one map from those of another by
     // their outlines.
     let planner = Planner::new(&paper());
-    let mut meshes = Meshes::default();
     let mut compared = 0;
     for seed in 0..150 {
         let mut draws = ChaCha8Rng::seed_from_u64(seed);
@@ -148,10 +147,10 @@ fn routes_are_connected_clear_of_known_debris_and_as_short_as_the_oracle_s() {
         // As a robot finds out: first without one half of the pieces, then from the route that the other half
         // cuts.
         let few = known(&outlines[..outlines.len() / 2]);
-        let so_far = planner.route(&query(&few, from, to, &[]), &mut meshes);
+        let so_far = planner.route(&query(&few, from, to, &[]));
         let so_far = so_far.as_ref().map_or(&[][..], Route::ahead);
-        let route = planner.route(&query(&obstacles, from, to, so_far), &mut meshes);
-        let fresh = planner.route(&query(&obstacles, from, to, &[]), &mut meshes);
+        let route = planner.route(&query(&obstacles, from, to, so_far));
+        let fresh = planner.route(&query(&obstacles, from, to, &[]));
         assert_eq!(route.is_some(), fresh.is_some(), "seed {seed}");
         let oracle = shortest(&polygons, from, to);
         assert_eq!(route.is_some(), oracle.is_some(), "seed {seed}");
@@ -264,10 +263,9 @@ fn no_route_leads_through_walls_that_meet_flush_and_every_open_room_is_reached()
         let outlines = plan.outlines();
         let obstacles = known(&outlines);
         let last = plan.cells[0] * plan.cells[1] - 1;
-        let mut meshes = Meshes::default();
         for (from, to) in [(0, last), (last, 0), (0, last / 2)] {
             let start = plan.middle(from);
-            let route = planner.route(&query(&obstacles, start, plan.middle(to), &[]), &mut meshes);
+            let route = planner.route(&query(&obstacles, start, plan.middle(to), &[]));
             assert_eq!(route.is_some(), plan.is_reachable(from, to), "plan {seed}, from {from} to {to}");
             let Some(route) = route else {
                 closed += 1;
@@ -302,7 +300,7 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
             in_the_way: &[],
             zones: &[(0, zone)],
         };
-        let route = Planner::new(&scenario).route(&query, &mut Meshes::default()).unwrap();
+        let route = Planner::new(&scenario).route(&query).unwrap();
         (route.length(from), route.length_inside(from, &zone))
     };
     let (straight, inside) = cost("0.0");
@@ -315,6 +313,25 @@ fn a_detour_round_radiation_is_made_where_it_is_cheaper_and_no_further() {
     assert!(
         (cheap - 20.0).abs() < 1e-3 && inside > 0.0,
         "4 s inside for 1.2 m are cheaper than 1.6 m round it"
+    );
+}
+
+/// A thread keeps what it made for a route: another zone of the same number must not be taken for the first.
+#[test]
+fn what_a_thread_has_planned_before_changes_no_route() {
+    let length = |radius: f32| {
+        let zone = RadiationZone { center: Vector::new(40.0, 30.0), radius };
+        let nothing = ObstacleMap::default();
+        let query = query(&nothing, [30.0, 30.0], [50.0, 30.0], &[]);
+        let query = Query { zones: &[(0, zone)], speed: 2.0, ..query };
+        Planner::new(&paper()).route(&query).unwrap().length(query.from)
+    };
+    let radii = [4.0, 2.0, 3.0, 4.0];
+    let one_after_the_other = radii.map(length);
+    let each_by_itself = radii.map(|radius| std::thread::spawn(move || length(radius)).join().unwrap());
+    assert_eq!(one_after_the_other, each_by_itself);
+    assert!(
+        one_after_the_other[0] > one_after_the_other[2] && one_after_the_other[2] > one_after_the_other[1]
     );
 }
 
@@ -342,7 +359,7 @@ fn observers_fly_over_debris() {
             in_the_way: &[],
             zones: &[],
         };
-        Planner::new(&scenario).route(&query, &mut Meshes::default()).unwrap().length(query.from)
+        Planner::new(&scenario).route(&query).unwrap().length(query.from)
     };
     assert!((length(true) - 30.0).abs() < 1e-3 && length(false) > 55.0);
 }
@@ -369,7 +386,6 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
         (0..3).for_each(|piece| {
             known.hear(&lies(piece, &world.debris[piece].outline(), 0));
         });
-        let mut meshes = Vec::new();
         let mut navigator = Navigator::new(1);
         let robot = world.robots[0].id;
         navigator.set_goal(robot, Some(Goal { point: Vector::new(20.0, 5.0), within: 0.15 }));
@@ -377,7 +393,7 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
             let (team, step) = (&world.robots[..], 1);
             let outlook =
                 Outlook { model: &model, team, step, belief_of: |_| known, speed_of: |_: &Robot| 2.0 };
-            navigator.plan(&outlook, &mut meshes, false);
+            navigator.plan(&outlook, false);
             navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
         };
         let before = length(&known);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::belief::{Belief, News};
 use crate::ids::RobotId;
 use crate::model::{Model, RuleKind};
-use crate::planning::{KnownObstacle, Meshes, Planner, Query, Route, Walls, polygon_contains};
+use crate::planning::{KnownObstacle, Planner, Query, Route, Walls, polygon_contains};
 use crate::robot::{Robot, STANDING_MPS};
 use trail::Trail;
 use traveller::{Attempt, PROGRESS_M};
@@ -90,27 +90,22 @@ impl Navigator {
         }
     }
 
-    /// Plans routes, on all threads if `in_parallel`: each part of the team then has meshes of its own. A
-    /// robot plans if it has no route yet, if new knowledge cuts its route or may make it dearer or
-    /// cheaper, or if it makes no progress.
-    pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, meshes: &mut Vec<Meshes>, in_parallel: bool)
+    /// Plans routes, on all threads if `in_parallel`. A robot plans if it has no route yet, if new knowledge
+    /// cuts its route or may make it dearer or cheaper, or if it makes no progress.
+    pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, in_parallel: bool)
     where
         B: Fn(RobotId) -> &'o Belief + Sync,
         S: Fn(&Robot) -> f64 + Sync,
     {
         let Self { travellers, trails } = self;
         if !in_parallel {
-            meshes.resize_with(meshes.len().max(1), Meshes::default);
-            return outlook.plan(outlook.team, travellers, trails, &mut meshes[0]);
+            return outlook.plan(outlook.team, travellers, trails);
         }
         let parts = PARTS_PER_THREAD * rayon::current_num_threads();
-        meshes.resize_with(meshes.len().max(parts), Meshes::default);
         let robots = outlook.team.len().div_ceil(parts).max(1);
         let journeys = travellers.par_chunks_mut(robots).zip(trails.par_chunks_mut(robots));
-        let parts = outlook.team.par_chunks(robots).zip(journeys).zip(meshes);
-        parts.for_each(|((team, (travellers, trails)), meshes)| {
-            outlook.plan(team, travellers, trails, meshes);
-        });
+        let parts = outlook.team.par_chunks(robots).zip(journeys);
+        parts.for_each(|(team, (travellers, trails))| outlook.plan(team, travellers, trails));
     }
 
     /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero
@@ -146,13 +141,7 @@ where
     S: Fn(&Robot) -> f64,
 {
     /// Plans the routes of some of the robots, whose journeys these are.
-    fn plan(
-        &self,
-        team: &'o [Robot],
-        travellers: &mut [Traveller],
-        trails: &mut [Trail],
-        meshes: &mut Meshes,
-    ) {
+    fn plan(&self, team: &'o [Robot], travellers: &mut [Traveller], trails: &mut [Trail]) {
         let detour_steps = self.model.steps_in(DETOUR_AFTER_S);
         for ((robot, traveller), trail) in team.iter().zip(travellers).zip(trails) {
             trail.note(robot.position);
@@ -165,7 +154,7 @@ where
             }
             traveller.note_progress(robot.position);
             let wayfinder = Wayfinder { outlook: self, robot, goal, belief: (self.belief_of)(robot.id) };
-            wayfinder.keep_on_route(traveller, detour_steps, meshes);
+            wayfinder.keep_on_route(traveller, detour_steps);
         }
     }
 }
@@ -180,7 +169,7 @@ struct Wayfinder<'w, 'o, B, S> {
 
 impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
     /// Plans a route if one is due.
-    fn keep_on_route(&self, traveller: &mut Traveller, detour_steps: u64, meshes: &mut Meshes) {
+    fn keep_on_route(&self, traveller: &mut Traveller, detour_steps: u64) {
         let Self { outlook, robot, belief, .. } = self;
         let check_due = (outlook.step + robot.id.0 as u64).is_multiple_of(outlook.model.route_check_steps);
         let attempt = traveller.attempt(detour_steps);
@@ -203,7 +192,7 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
         let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
         let so_far = cut.map_or(&[][..], Route::ahead);
         let query = Query { so_far, in_the_way: &in_the_way, ..self.query() };
-        let route = find_route(&outlook.model.planner, &query, meshes);
+        let route = find_route(&outlook.model.planner, &query);
         if is_detour && !traveller.is_as_near(route.as_ref(), self.goal) {
             return;
         }
@@ -299,10 +288,10 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
 
 /// The cheapest route round the standing robots. If there is none, the cheapest route through them, because
 /// they may move.
-fn find_route(planner: &Planner, query: &Query, meshes: &mut Meshes) -> Option<Route> {
-    let route = planner.route(query, meshes);
+fn find_route(planner: &Planner, query: &Query) -> Option<Route> {
+    let route = planner.route(query);
     if route.is_some() || query.in_the_way.is_empty() {
         return route;
     }
-    planner.route(&Query { in_the_way: &[], ..*query }, meshes)
+    planner.route(&Query { in_the_way: &[], ..*query })
 }

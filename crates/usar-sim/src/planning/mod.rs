@@ -26,7 +26,6 @@ pub use obstacles::{
 };
 pub use passage::{Passage, Walls};
 pub use route::Route;
-pub use search::Meshes;
 
 use parry2d::math::Vector;
 
@@ -35,7 +34,7 @@ use crate::scenario::{RoleKind, Scenario};
 use obstacles::ZONE_MARGIN_M;
 use search::Search;
 
-/// The planner of one trial: its settings. What it remembers between two routes is in [`Meshes`].
+/// The planner of one trial: its settings.
 #[derive(Debug)]
 pub struct Planner {
     arena: Vector,
@@ -95,9 +94,9 @@ impl Planner {
 
     /// The cheapest route, or `None` if there is none. Its last waypoint is the goal, or the free point
     /// nearest to the goal if the goal lies within the clearance of an obstacle.
-    pub fn route(&self, query: &Query, meshes: &mut Meshes) -> Option<Route> {
+    pub fn route(&self, query: &Query) -> Option<Route> {
         let mut closed = Vec::new();
-        let mut best = self.route_around(query, &closed, meshes)?;
+        let mut best = self.route_around(query, &closed)?;
         let mut best_cost = self.cost(query, &best);
         for _ in 0..query.zones.len() {
             let mut improved = None;
@@ -109,7 +108,7 @@ impl Planner {
                 let mut trial = closed.clone();
                 trial.push(*number);
                 trial.sort_unstable();
-                let Some(route) = self.route_around(query, &trial, meshes) else { continue };
+                let Some(route) = self.route_around(query, &trial) else { continue };
                 let cost = self.cost(query, &route);
                 if cost < best_cost {
                     (best, best_cost) = (route, cost);
@@ -137,13 +136,12 @@ impl Planner {
         let obstacle =
             |(outline, number)| KnownObstacle::new(ObstacleKey::Debris(number), outline, offset, 0.0);
         let known: ObstacleMap = outlines.iter().zip(0..).map(obstacle).collect();
-        let search =
-            Search { arena: self.arena, offset, known: Some(&known), always: Vec::new(), numbers: None };
-        let mut meshes = Meshes::default();
+        let (arena, known, always) = (self.arena, Some(&known), Vec::new());
+        let search = Search { arena, offset, known, always, keeps_meshes: false };
         let mut reached = search.free_point(from);
         places.iter().find(|(_, place)| {
             let place = search.free_point(*place);
-            let is_reached = search.way([reached, place], &[], &mut meshes).is_some();
+            let is_reached = search.way([reached, place], &[]).is_some();
             reached = if is_reached { place } else { reached };
             !is_reached
         })
@@ -156,7 +154,7 @@ impl Planner {
     }
 
     /// The shortest route round the closed zones and all obstacles.
-    fn route_around(&self, query: &Query, closed: &[u32], meshes: &mut Meshes) -> Option<Route> {
+    fn route_around(&self, query: &Query, closed: &[u32]) -> Option<Route> {
         let zones = query.zones.iter().filter(|(number, _)| closed.contains(number));
         let zones: Vec<Vec<Vector>> =
             zones.map(|(_, zone)| Outline::disc(zone.center, zone.radius).inflated(ZONE_MARGIN_M)).collect();
@@ -166,10 +164,10 @@ impl Planner {
             offset: if query.aerial { self.aerial_offset } else { self.ground_offset(query.radius) },
             known: (!query.aerial).then_some(query.obstacles),
             always: zones.iter().chain(in_the_way).map(Vec::as_slice).collect(),
-            numbers: query.in_the_way.is_empty().then_some(closed),
+            keeps_meshes: query.in_the_way.is_empty(),
         };
         let from = search.free_point(query.from);
-        let way = search.way([from, search.free_point(query.to)], query.so_far, meshes)?;
+        let way = search.way([from, search.free_point(query.to)], query.so_far)?;
         let start = (from != query.from).then_some(from);
         Some(Route::new(start.into_iter().chain(way).collect()))
     }

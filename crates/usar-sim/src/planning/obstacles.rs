@@ -46,13 +46,8 @@ impl KnownObstacle {
     pub fn new(key: ObstacleKey, outline: &Outline, radius: f32, clearance: f32) -> Self {
         let planned = outline.inflated(radius + clearance);
         let tight = outline.inflated(radius + clearance / 3.0);
-        let bytes: Vec<u8> = planned
-            .iter()
-            .flat_map(|at| [at.x, at.y])
-            .flat_map(|value| value.to_bits().to_le_bytes())
-            .collect();
         let bounds = Aabb::from_points(planned.iter().copied());
-        Self { key, digest: xxh3_64(&bytes), bounds, planned, tight }
+        Self { key, digest: digest(&planned), bounds, planned, tight }
     }
 
     /// A hash of its key and outline.
@@ -216,6 +211,12 @@ fn nearest_edge(polygon: &[Vector], point: Vector) -> (Vector, f32) {
         }
     }
     nearest
+}
+
+/// Hash of the corners of an outline: equal hashes, equal outlines.
+pub(super) fn digest(outline: &[Vector]) -> u64 {
+    let values = outline.iter().flat_map(|at| [at.x, at.y]);
+    xxh3_64(&values.flat_map(|value| value.to_bits().to_le_bytes()).collect::<Vec<u8>>())
 }
 
 fn edges(polygon: &[Vector]) -> impl Iterator<Item = (Vector, Vector)> + '_ {

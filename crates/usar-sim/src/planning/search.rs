@@ -1,5 +1,6 @@
 //! The shortest path among obstacles, found among the few obstacles that matter.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -8,7 +9,9 @@ use polyanya::{Mesh, Triangulation};
 
 use super::faces::{Faces, SEARCH_DELTA_M};
 use super::map::ObstacleMap;
-use super::obstacles::{KnownObstacle, ObstacleKey, contains, crosses, is_entered, push_out, touches};
+use super::obstacles::{
+    KnownObstacle, ObstacleKey, contains, crosses, digest, is_entered, push_out, touches,
+};
 
 /// Range around a point within an obstacle in which the obstacles are considered when a free point is
 /// searched for, in metres. If the search finds none, the range grows.
@@ -19,8 +22,8 @@ const PUSH_OUT_RANGE_M: f32 = 8.0;
 /// and meshes.
 const GUESS_RANGE_M: f32 = 2.0;
 
-/// Number of meshes that are kept. When there are more, all are dropped and made anew on demand.
-const MAX_MESHES: usize = 64;
+/// Number of meshes that a thread keeps. When there are more, all are dropped and made anew on demand.
+const MAX_MESHES: usize = 512;
 
 /// Attempts to find a path among obstacles before they count as impassable. The first attempt leaves outlines
 /// apart. Where outlines meet, the library may then panic, or take the inside of an obstacle for free
@@ -49,20 +52,25 @@ impl Plane {
     }
 }
 
-/// Planes among few obstacles, kept to save time: robots on the same route ask for the same planes again and
-/// again. `None` if the library failed.
+/// Planes among few obstacles. `None` if the library failed.
 #[derive(Default)]
-pub struct Meshes(BTreeMap<MeshKey, Option<Plane>>);
+struct Meshes(BTreeMap<MeshKey, Option<Plane>>);
+
+thread_local! {
+    /// The planes that were made on this thread, kept to save time: robots on the same route ask for the same
+    /// planes again and again, and so do trials of one scenario. A plane follows from its key alone.
+    static MESHES: RefCell<Meshes> = RefCell::default();
+}
 
 /// What a plane is made of.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct MeshKey {
-    /// Distance from the border, as its bits.
-    offset: u32,
+    /// Width and height of the arena, and distance from its border, as bits.
+    border: [u32; 3],
     /// The obstacles, with the hashes of their outlines.
     obstacles: Vec<(ObstacleKey, u64)>,
-    /// Numbers of the closed zones.
-    zones: Vec<u32>,
+    /// Hashes of the outlines of the closed zones.
+    zones: Vec<u64>,
     attempt: usize,
 }
 
@@ -76,8 +84,8 @@ pub(super) struct Search<'a> {
     pub(super) known: Option<&'a ObstacleMap>,
     /// Corners of the few obstacles that always count.
     pub(super) always: Vec<&'a [Vector]>,
-    /// Numbers that identify the `always` obstacles, if the meshes are to be kept.
-    pub(super) numbers: Option<&'a [u32]>,
+    /// Whether meshes are kept for later searches: not those round obstacles that will soon be elsewhere.
+    pub(super) keeps_meshes: bool,
 }
 
 impl<'a> Search<'a> {
@@ -111,12 +119,7 @@ impl<'a> Search<'a> {
     /// The shortest path from one free point to another, without its start; `None` if there is none. `hint`
     /// holds the waypoints of a path that may be cut; the search begins with the obstacles at its bends. It
     /// may be empty.
-    pub(super) fn way(
-        &self,
-        [from, to]: [Vector; 2],
-        hint: &[Vector],
-        meshes: &mut Meshes,
-    ) -> Option<Vec<Vector>> {
+    pub(super) fn way(&self, [from, to]: [Vector; 2], hint: &[Vector]) -> Option<Vec<Vector>> {
         let mut way = if hint.is_empty() { vec![to] } else { hint.to_vec() };
         let mut met = self.bent_round(hint);
         let mut is_clear = hint.is_empty() && !self.always.iter().any(|polygon| crosses(polygon, from, to));
@@ -128,7 +131,7 @@ impl<'a> Search<'a> {
             }
             met.extend(news);
             met.sort_unstable_by_key(|obstacle| obstacle.key);
-            way = self.way_round(&met, [from, to], meshes)?;
+            way = self.way_round(&met, [from, to])?;
             is_clear = true;
             guess = f32::max(GUESS_RANGE_M, 2.0 * guess);
         }
@@ -147,17 +150,13 @@ impl<'a> Search<'a> {
     }
 
     /// The shortest path round these obstacles.
-    fn way_round(
-        &self,
-        met: &[&KnownObstacle],
-        [from, to]: [Vector; 2],
-        meshes: &mut Meshes,
-    ) -> Option<Vec<Vector>> {
+    fn way_round(&self, met: &[&KnownObstacle], [from, to]: [Vector; 2]) -> Option<Vec<Vector>> {
         for attempt in 0..ATTEMPTS {
-            let path = |plane: &Plane| plane.path(from, to);
-            let found = match self.key(met, attempt) {
-                Some(key) => meshes.get(key, || self.plane(met, attempt)).map(path),
-                None => self.plane(met, attempt).as_ref().map(path),
+            let (make, path) = (|| self.plane(met, attempt), |plane: &Plane| plane.path(from, to));
+            let found = if self.keeps_meshes {
+                MESHES.with_borrow_mut(|meshes| meshes.get(self.key(met, attempt), make).map(path))
+            } else {
+                make().as_ref().map(path)
             };
             match found {
                 Some(Some(way)) if self.keeps_clear(met, from, &way) => return Some(way),
@@ -168,14 +167,14 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// The key by which the plane is kept, if it is.
-    fn key(&self, met: &[&KnownObstacle], attempt: usize) -> Option<MeshKey> {
-        Some(MeshKey {
-            offset: self.offset.to_bits(),
+    /// The key by which a plane is kept.
+    fn key(&self, met: &[&KnownObstacle], attempt: usize) -> MeshKey {
+        MeshKey {
+            border: [self.arena.x, self.arena.y, self.offset].map(f32::to_bits),
             obstacles: met.iter().map(|obstacle| (obstacle.key, obstacle.digest)).collect(),
-            zones: self.numbers?.to_vec(),
+            zones: self.always.iter().map(|outline| digest(outline)).collect(),
             attempt,
-        })
+        }
     }
 
     /// Whether a path enters none of the obstacles that it was made to avoid, except one that its start or
@@ -289,11 +288,11 @@ mod tests {
             offset: 0.55,
             known: None,
             always: outlines.iter().map(Vec::as_slice).collect(),
-            numbers: None,
+            keeps_meshes: false,
         };
         assert!(search.plane(&[], 0).is_none(), "the library is mended: docs/triangulation.md can go");
         let ends = [Vector::new(20.0, 70.0), Vector::new(50.0, 70.0)];
-        let way = search.way(ends, &[], &mut Meshes::default()).unwrap();
+        let way = search.way(ends, &[]).unwrap();
         let legs = || std::iter::once(&ends[0]).chain(&way).zip(&way);
         assert!(legs().all(|(a, b)| !outlines.iter().any(|outline| crosses(outline, *a, *b))));
         let length: f32 = legs().map(|(a, b)| (*b - *a).length()).sum();
@@ -310,13 +309,13 @@ mod tests {
             offset: 0.55,
             known: Some(&known),
             always: Vec::new(),
-            numbers: None,
+            keeps_meshes: false,
         };
         let point = Vector::new(10.0, 0.45); // free itself, but nearer to the border than routes go
         assert!(!search.covers(point) && search.covers(Vector::new(10.0, 0.57)));
         let free = search.free_point(point);
         assert!(!search.covers(free) && free.y >= 0.55 && (free - point).length() < 1.2, "{free}");
-        assert!(search.way([free, Vector::new(10.0, 15.0)], &[], &mut Meshes::default()).is_some());
+        assert!(search.way([free, Vector::new(10.0, 15.0)], &[]).is_some());
         assert_eq!(search.free_point(Vector::new(5.0, 5.0)), Vector::new(5.0, 5.0));
     }
 }

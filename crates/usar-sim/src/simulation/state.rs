@@ -17,7 +17,6 @@ use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
 use crate::model::Model;
 use crate::navigation::{Navigator, Outlook};
-use crate::planning::Meshes;
 use crate::record::DecisionRecord;
 use crate::report::Report;
 use crate::robot::{Robot, STANDING_MPS};
@@ -61,7 +60,6 @@ pub(crate) struct State {
 pub(super) struct Scratch {
     pub(super) heard: Vec<Report>,
     movers: Vec<Mover<'static>>,
-    meshes: Vec<Meshes>,
     conflict: conflict::Scratch,
     /// Whether the steps of a large team are done on all threads.
     in_parallel: bool,
@@ -208,7 +206,7 @@ impl State {
             speed_of: |robot: &Robot| faults.speed_of(robot.id, mission.crew.speed_of(model, robot)),
         };
         let in_parallel = scratch.in_parallel && beliefs.team.len() >= MANY_ROBOTS;
-        self.navigator.plan(&outlook, &mut scratch.meshes, in_parallel);
+        self.navigator.plan(&outlook, in_parallel);
     }
 
     /// Decides which robots go and which wait, and notes why robots stop.
