@@ -62,7 +62,7 @@ pub use measure::{NeedPart, TeamTrust, TrustMeasure};
 pub use needs::{NeedDistribution, NeedVector, NeedWeights};
 pub use policy::Policy;
 pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
-pub use registry::{EstimatorKind, Kind, MeasureKind, PolicyKind, Registry};
+pub use registry::{EstimatorKind, Kind, Makes, MeasureKind, PolicyKind, Registry};
 pub use registry_error::RegistryError;
 pub use said::{EnergyOutcome, SaidRounds, Used};
 pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};

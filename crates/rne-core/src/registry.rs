@@ -187,12 +187,6 @@ impl<T: ?Sized> Clone for Kind<T> {
 }
 
 impl PolicyKind {
-    /// A policy without options.
-    pub fn plain<P: Policy + Clone + 'static>(name: &str, about: &str, policy: P) -> Self {
-        let driver: Arc<dyn Driver> = Arc::new(Pure(Arc::new(policy)));
-        Self::without_options(name, about, driver)
-    }
-
     /// A stand-in for a policy of another program, so that its results can be read here. Of each of its
     /// options as they are written, `spelled_out` has all options with the defaults. It never answers.
     #[must_use]
@@ -204,68 +198,53 @@ impl PolicyKind {
         };
         Self::new([name, "a policy of another program"], String::new(), Arc::new(make))
     }
+}
 
-    /// A policy that is made from options: a struct with defaults, read from RON such as `(score: Sum)`.
-    /// `make` checks the options.
-    pub fn with_options<O, P, E>(
-        name: &str,
-        about: &str,
-        make: impl Fn(O) -> Result<P, E> + Send + Sync + 'static,
-    ) -> Self
-    where
-        O: Default + Serialize + DeserializeOwned,
-        P: Policy + 'static,
-        E: fmt::Display,
-    {
-        Self::made(name, about, move |options: O, _| {
-            make(options).map(|policy| Arc::new(Pure(Arc::new(policy))) as Arc<dyn Driver>)
-        })
+/// What an entry can be made of: a policy, a trust measure or an estimator.
+pub trait Makes<T: ?Sized> {
+    /// As the registry keeps it.
+    fn shared(self) -> Arc<T>;
+}
+
+impl<P: Policy + 'static> Makes<dyn Driver> for P {
+    fn shared(self) -> Arc<dyn Driver> {
+        Arc::new(Pure(Arc::new(self)))
     }
 }
 
-impl MeasureKind {
-    /// A trust measure that is made from options, see [`Kind::made`].
-    pub fn with_options<O, M, E>(
-        name: &str,
-        about: &str,
-        make: impl Fn(O) -> Result<M, E> + Send + Sync + 'static,
-    ) -> Self
-    where
-        O: Default + Serialize + DeserializeOwned,
-        M: TrustMeasure + 'static,
-        E: fmt::Display,
-    {
-        Self::made(name, about, move |options: O, _| {
-            make(options).map(|measure| Arc::new(measure) as Arc<dyn TrustMeasure>)
-        })
+impl<M: TrustMeasure + 'static> Makes<dyn TrustMeasure> for M {
+    fn shared(self) -> Arc<dyn TrustMeasure> {
+        Arc::new(self)
     }
 }
 
-impl EstimatorKind {
-    /// An estimator without options.
-    pub fn plain(name: &str, about: &str, estimator: impl Estimator + 'static) -> Self {
-        let estimator: Arc<dyn Estimator> = Arc::new(estimator);
-        Self::without_options(name, about, estimator)
-    }
-
-    /// An estimator that is made from options, see [`Kind::made`].
-    pub fn with_options<O, M, E>(
-        name: &str,
-        about: &str,
-        make: impl Fn(O) -> Result<M, E> + Send + Sync + 'static,
-    ) -> Self
-    where
-        O: Default + Serialize + DeserializeOwned,
-        M: Estimator + 'static,
-        E: fmt::Display,
-    {
-        Self::made(name, about, move |options: O, _| {
-            make(options).map(|estimator| Arc::new(estimator) as Arc<dyn Estimator>)
-        })
+impl<E: Estimator + 'static> Makes<dyn Estimator> for E {
+    fn shared(self) -> Arc<dyn Estimator> {
+        Arc::new(self)
     }
 }
 
 impl<T: ?Sized + Send + Sync + 'static> Kind<T> {
+    /// An entry without options.
+    pub fn plain(name: &str, about: &str, it: impl Makes<T>) -> Self {
+        Self::without_options(name, about, it.shared())
+    }
+
+    /// An entry that is made from options: a struct with defaults, read from RON such as `(score: Sum)`.
+    /// `make` checks the options.
+    pub fn with_options<O, M, E>(
+        name: &str,
+        about: &str,
+        make: impl Fn(O) -> Result<M, E> + Send + Sync + 'static,
+    ) -> Self
+    where
+        O: Default + Serialize + DeserializeOwned,
+        M: Makes<T>,
+        E: fmt::Display,
+    {
+        Self::made(name, about, move |options: O, _| make(options).map(Makes::shared))
+    }
+
     /// An entry that is made from options, and that may look for others in the registry that makes it. A
     /// driver that leans on others says so in its [fingerprint](Driver::fingerprint), with theirs.
     pub fn made<O, E>(
