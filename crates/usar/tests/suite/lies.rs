@@ -30,7 +30,7 @@ fn the_room_of_a_world_is_that_of_its_trials() {
     assert!(text.contains("rescuees.total of 8 trials, paired by seed; minus RANDOM"), "{text}");
     let json = succeeds(&usar(folder.path(), &format!("{command} --json")[..]));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let rows = json["rows"].as_array().unwrap();
+    let rows = json["worlds"][0]["policies"].as_array().unwrap();
     let policies: Vec<&str> = rows.iter().map(|row| row["policy"].as_str().unwrap()).collect();
     assert_eq!(policies, ["RNE", "DIS", "RANDOM", "best", "worst"]);
     let mean = |policy: usize| rows[policy]["mean"].as_f64().unwrap();
@@ -49,6 +49,12 @@ fn the_room_of_a_world_is_that_of_its_trials() {
         .collect();
     assert_eq!(of_rne.len(), 8);
     assert!((of_rne.iter().sum::<f64>() / 8.0 - mean(0)).abs() < 1e-9);
+    let all = succeeds(&usar(folder.path(), "study room results/room-two results/room-two --format csv"));
+    let rows: Vec<&str> = all.lines().filter(|line| line.starts_with("two,")).collect();
+    assert!(
+        all.starts_with("world,RANDOM,RNE,DIS,best,worst") && rows.len() == 2 && rows[0] == rows[1],
+        "{all}"
+    );
 }
 
 #[test]
