@@ -58,36 +58,13 @@ fn locked(path: &str) -> BTreeSet<[String; 2]> {
     packages.map(|package| ["name", "version"].map(|field| value(package, field))).collect()
 }
 
-/// The page of the laboratory and the Python package are built from the versions of the command: other ones
-/// would have other bits.
+/// The page of the laboratory is built from the versions of the command: other ones would have other bits.
 #[test]
-fn other_workspaces_have_the_versions_of_the_command() {
-    let command = locked("Cargo.lock");
-    let others = |workspace: &str| -> Vec<String> {
-        let theirs = locked(&format!("{workspace}/Cargo.lock"));
-        assert!(theirs.iter().any(|[name, _]| name == "rapier2d"));
-        theirs.difference(&command).map(|[name, _]| name.clone()).collect()
-    };
-    assert_eq!(others("lab"), ["usar-lab"]);
-    let python = others("python");
-    let belongs = |name: &String| {
-        ["pyo3", "pythonize", "target-lexicon", "usar-python"].iter().any(|own| name.starts_with(own))
-    };
-    assert!(python.len() == 8 && python.iter().all(belongs), "{python:?}");
-}
-
-/// Otherwise libraries would be compiled once more for the Python package.
-#[test]
-fn the_python_package_has_the_release_profile_of_the_command() {
-    let profile = |file: &str| {
-        let text = text(file);
-        let sections = text.split("\n[").filter(|section| section.starts_with("profile.release"));
-        let lines = sections.flat_map(str::lines).map(str::trim).filter(|line| !line.starts_with('#'));
-        let lines = lines.filter(|line| !line.is_empty() && !line.starts_with("frozen-physics"));
-        lines.map(str::to_owned).collect::<Vec<String>>()
-    };
-    assert_eq!(profile("python/Cargo.toml"), profile("Cargo.toml"));
-    assert!(profile("Cargo.toml").len() > 20);
+fn the_page_has_the_versions_of_the_command() {
+    let page = locked("lab/Cargo.lock");
+    assert!(page.iter().any(|[name, _]| name == "rapier2d"));
+    let others: Vec<_> = page.difference(&locked("Cargo.lock")).map(|[name, _]| name.clone()).collect();
+    assert_eq!(others, ["usar-lab"]);
 }
 
 #[test]
@@ -98,5 +75,4 @@ fn only_the_door_of_the_page_is_unsafe() {
         assert_eq!(is_unsafe, name == "door.rs", "{name}");
     }
     assert!(text("lab/Cargo.toml").contains("unsafe_code = \"deny\""));
-    assert!(text("python/Cargo.toml").contains("unsafe_code = \"forbid\""));
 }

@@ -1,4 +1,6 @@
 //! The native half of the Python package `usar`. What a user sees, with its documentation, is in `usar/`.
+#![expect(clippy::doc_markdown, reason = "comments are docstrings")]
+#![expect(clippy::needless_pass_by_value, reason = "Python hands over what it calls with")]
 
 mod answer;
 mod arrays;
