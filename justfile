@@ -18,42 +18,42 @@ lab:
 
 # 100 seeds of paper.ron under all five policies: nobody stuck, nothing lost, no number undefined
 soak:
-    cargo run --release --package xtask -- soak
+    cargo run --release --bin xtask -- soak
 
 # 500 random worlds in the open and 500 with rooms, 900 s each: violations, internal errors, fleets and robots that do not get on
 worlds:
-    cargo run --release --package xtask -- worlds
+    cargo run --release --bin xtask -- worlds
 
 # How well robots pass one another: 33 problems of the literature, 20 seeds each; `--help` for options
 navigation *arguments:
-    cargo run --release --package xtask -- navigation {{arguments}}
+    cargo run --release --bin xtask -- navigation {{arguments}}
 
 # Crowds at doors and in corridors beside measured people, and the problems of CADRL; `--out docs` renews docs/movement.md
 movement *arguments:
-    cargo run --release --package xtask -- movement {{arguments}}
+    cargo run --release --bin xtask -- movement {{arguments}}
 
 # 510 random worlds with the engine at rest in quiet steps and with the engine always on: every hash is the same
 quiet *arguments:
-    cargo run --release --package xtask -- quiet {{arguments}}
+    cargo run --release --bin xtask -- quiet {{arguments}}
 
 # Other methods on the same problems (ORCA, HRVO, HL by the public Python packages): half an hour; renews peers.csv and square.csv in crates/xtask/peers
 peers:
-    cargo run --release --package xtask -- navigation --seeds 5 --worlds target/worlds.jsonl
+    cargo run --release --bin xtask -- navigation --seeds 5 --worlds target/worlds.jsonl
     python3 -m venv target/peers
     target/peers/bin/pip install --quiet navground==0.7.0 pyrvo==0.4.3 numpy==2.4.6
     target/peers/bin/python crates/xtask/peers/peers.py target/worlds.jsonl crates/xtask/peers/peers.csv
-    cargo run --release --package xtask -- movement --worlds target/squares.jsonl
+    cargo run --release --bin xtask -- movement --worlds target/squares.jsonl
     target/peers/bin/python crates/xtask/peers/square.py target/squares.jsonl crates/xtask/peers/square.csv
 
 # A sweep killed at 100 random moments: nothing lost, nothing done twice, the same bytes in the end
 kills *arguments:
     cargo build --release --package usar
-    cargo run --release --package xtask -- kills {{arguments}}
+    cargo run --release --bin xtask -- kills {{arguments}}
 
 # A finished sweep's folder with 1,000 flipped bits and 100 forged numbers, one at a time: each is found, each flip is mended
 damage *arguments:
     cargo build --release --package usar
-    cargo run --release --package xtask -- damage {{arguments}}
+    cargo run --release --bin xtask -- damage {{arguments}}
 
 # A sweep on Slurm itself, with a task killed and one cancelled: installs Debian's slurm-wlm, needs root
 slurm:
@@ -61,15 +61,15 @@ slurm:
 
 # 100,000 damaged scenarios, sweep files, tables, snapshots and questions through their loaders: no panic, none takes a second
 mutations *arguments:
-    cargo run --release --package xtask -- mutations {{arguments}}
+    cargo run --release --bin xtask -- mutations {{arguments}}
 
 # 500 random scenarios of all kinds, with distributions and timelines: a minute of each with every invariant checked
 scenarios *arguments:
-    cargo run --release --package xtask -- scenarios {{arguments}}
+    cargo run --release --bin xtask -- scenarios {{arguments}}
 
 # The pages made from the code: docs/scenarios-reference.md, docs/columns.md, docs/events.md, the schemas of files, and docs/commands.md
 reference:
-    cargo run --package xtask -- reference
+    cargo run --bin xtask -- reference
     cargo run -- self man --markdown > target/commands.md && mv target/commands.md docs/commands.md
 
 # The pages of docs/ as a book in target/book; index.html opens from disk, with search
@@ -86,7 +86,7 @@ deny:
 
 # docs/limits.md from the constants
 limits:
-    cargo run --package xtask -- limits
+    cargo run --bin xtask -- limits
 
 # What a step costs: full simulator against raw physics, stage by stage
 bench:
@@ -105,11 +105,11 @@ instructions *arguments:
 
 # 10,000 robots for a minute: time, memory, rescuees; other numbers and a resolver as arguments
 scale *arguments:
-    cargo run --release --package xtask -- scale {{arguments}}
+    cargo run --release --bin xtask -- scale {{arguments}}
 
 # New golden hashes of the small worlds; say in CHANGELOG.md why numbers change
 golden:
-    cargo run --release --package xtask -- golden --write
+    cargo run --release --bin xtask -- golden --write
 
 # The page of `usar view` from viewer/, into crates/usar/assets/viewer.html, where the program takes it from
 viewer:
@@ -119,7 +119,7 @@ viewer:
 # The numbers in docs/, anew: the commands before each block are run; their results must be there (`just results`)
 pages *pages:
     cargo build --release --package usar
-    cargo run --release --package xtask -- pages {{pages}}
+    cargo run --release --bin xtask -- pages {{pages}}
 
 # The results that the pages in docs/ are made of: some hours on two cores, 10 GB of disk; goes on where it was broken off
 results:
@@ -130,7 +130,7 @@ results:
     target/release/usar sweep scenarios/sweeps/turning-back-calibrated.ron
     target/release/usar sweep scenarios/sweeps/best-reading.ron
     target/release/usar sweep scenarios/sweeps/readings.ron
-    target/release/usar sweep scenarios/sweeps/readings-calibrated.ron
+    target/release/usar sweep scenarios/sweeps/readings.ron --scenario scenarios/paper-calibrated.ron
     target/release/usar sweep scenarios/sweeps/what-matters.ron
     target/release/usar sweep scenarios/sweeps/what-matters-calibrated.ron
     target/release/usar sweep scenarios/sweeps/what-matters-leak.ron
@@ -140,14 +140,12 @@ results:
     target/release/usar sweep scenarios/sweeps/coarse-leak.ron
     target/release/usar sweep scenarios/sweeps/when-a-robot-rests.ron
     target/release/usar sweep scenarios/sweeps/tunnel-slow-carriers.ron
-    target/release/usar sweep scenarios/sweeps/lies-tunnel.ron
-    target/release/usar sweep scenarios/sweeps/lies-convoy.ron
-    target/release/usar sweep scenarios/sweeps/lies-aftershocks.ron
+    for world in tunnel convoy aftershocks; do target/release/usar sweep scenarios/sweeps/lies.ron --scenario scenarios/trust/$world.ron; done
     target/release/usar sweep scenarios/sweeps/lies-field.ron
     target/release/usar study deceit scenarios/sweeps/trust-tunnel.ron
-    target/release/usar study regret scenarios/sweeps/trust-tunnel-regret.ron
+    target/release/usar study regret scenarios/sweeps/trust-regret.ron --scenario scenarios/trust/tunnel.ron
     target/release/usar study deceit scenarios/sweeps/trust-convoy.ron
 
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:
-    cargo run --release --package xtask -- coverage {{arguments}}
+    cargo run --release --bin xtask -- coverage {{arguments}}

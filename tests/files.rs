@@ -72,7 +72,7 @@ fn the_page_names_each_file_and_each_has_its_picture() {
 #[test]
 fn the_reference_is_made_of_the_types() {
     let page = std::fs::read_to_string(reference::path()).unwrap();
-    assert!(page == reference::page(), "cargo run --package xtask -- reference makes it anew");
+    assert!(page == reference::page(), "cargo run --bin xtask -- reference makes it anew");
     let schema = scenario_schema();
     let fields = schema["properties"].as_object().unwrap();
     for (name, field) in fields {

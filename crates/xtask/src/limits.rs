@@ -12,7 +12,7 @@ What a file may say, and how much of it. Each limit is checked before anything i
 beyond one is refused with its line and field, in less than 100 ms and with less than 50 MB of memory. Only
 regular files are read: no folder, no pipe, no device.
 
-The constants are the source of this page: `cargo run --package xtask -- limits` makes it, and a test compares
+The constants are the source of this page: `cargo run --bin xtask -- limits` makes it, and a test compares
 it with them. `*` stands for any entry.
 ";
 

@@ -1,4 +1,4 @@
-//! Tasks of the project itself: `cargo run --release --package xtask -- TASK [ARGUMENT ...]`, in the
+//! Tasks of the project itself: `cargo run --release --bin xtask -- TASK [ARGUMENT ...]`, in the
 //! project's folder. The justfile lists them with their arguments.
 
 mod commands;

@@ -15,7 +15,7 @@ limits of
 the numbers are in [limits](limits.md). In the place of a number may stand a
 [distribution](scenarios.md#a-value-or-a-distribution).
 
-The comments of the types are the source of this page: `cargo run --package xtask -- reference` makes it, \
+The comments of the types are the source of this page: `cargo run --bin xtask -- reference` makes it, \
 and a test
 compares it with them.
 ";

@@ -17,7 +17,7 @@ const EVENTS: &str = "\
 `/events` of an MCAP log have the same. Robots, rescuees, debris and radiation zones have numbers from 0;
 `task` is a row of the scenario's table of tasks.
 
-The comments of the type are the source of this page: `cargo run --package xtask -- reference` makes it.
+The comments of the type are the source of this page: `cargo run --bin xtask -- reference` makes it.
 
 | event | what | fields |
 | --- | --- | --- |
@@ -33,7 +33,7 @@ axes. The name of a metric on the command line has a dot before the task: the co
 The tables that `usar export csv` and `usar export parquet` write of a recording are \
 [below](#recordings-robotscsv).
 
-The program is the source of this page: `cargo run --package xtask -- reference` makes it.
+The program is the source of this page: `cargo run --bin xtask -- reference` makes it.
 ";
 
 /// The pages, each with its path and its text.

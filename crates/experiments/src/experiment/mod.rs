@@ -15,7 +15,7 @@ mod shard;
 mod start;
 mod sweep_file;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use rne_core::Registry;
@@ -70,6 +70,8 @@ pub struct Overrides {
     pub is_checked: bool,
     /// What to keep of each trial.
     pub keep: Option<Keep>,
+    /// The scenario of a sweep file, instead of the one that it names. Its name is added to that of the sweep.
+    pub scenario: Option<PathBuf>,
 }
 
 /// A sweep, ready to run.
@@ -146,7 +148,9 @@ impl Experiment {
     ) -> Result<Self, Failure> {
         let is_sweep = parse_tree(&text, path).map_err(Failure::input)?.get("scenario").is_some();
         let (mut parts, readings) = if is_sweep {
-            from_sweep_file(text, path, registry)?
+            from_sweep_file(text, path, overrides.scenario.as_deref(), registry)?
+        } else if overrides.scenario.is_some() {
+            refuse!("--scenario: is for a sweep file, and {} is a scenario itself", path.display());
         } else {
             from_scenario(text, path, registry)?
         };

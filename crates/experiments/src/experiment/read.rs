@@ -98,7 +98,7 @@ pub(super) fn from_scenario(
                 file.scenario
             );
         }
-        return from_sweep_file(sweep, &companion, registry);
+        return from_sweep_file(sweep, &companion, None, registry);
     }
     let base = Scenario::parse(&text, path).map_err(Failure::input)?;
     let parts = Parts {

@@ -29,18 +29,22 @@ const MOST_PROBLEMS: usize = 20;
 /// An option of RNE with its values.
 pub(super) type Reading = (String, Vec<String>);
 
-/// The parts of an experiment, and the readings of RNE.
+/// The parts of an experiment, and the readings of RNE. It can be run in another scenario than the file's.
 pub(super) fn from_sweep_file(
     text: String,
     path: &Path,
+    scenario: Option<&Path>,
     registry: &Registry,
 ) -> Result<(Parts, Vec<Reading>), Failure> {
-    let file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
+    let mut file: SweepFile = parse_ron(&text, path).map_err(Failure::input)?;
     let tree = parse_tree(&text, path).map_err(Failure::input)?;
     let mut check = Check { path, tree, registry, problems: Vec::new() };
     check.sizes(&file);
     check.must_be_sound()?; // the rules below take time with each entry
-    let base = check.base(&file);
+    if let Some(stem) = scenario.and_then(Path::file_stem) {
+        file.name = format!("{}-{}", file.name, stem.display());
+    }
+    let base = check.base(&file, scenario);
     let mut axes = Vec::new();
     if let Some(base) = &base {
         axes.extend(check.variants(&file.variants, base));
@@ -165,12 +169,12 @@ impl Check<'_> {
     }
 
     /// The scenario with what the sweep sets in it.
-    fn base(&mut self, file: &SweepFile) -> Option<Scenario> {
-        let scenario = beside(self.path, &file.scenario);
+    fn base(&mut self, file: &SweepFile, other: Option<&Path>) -> Option<Scenario> {
+        let scenario = other.map_or_else(|| beside(self.path, &file.scenario), Path::to_owned);
         let (base, _) = match Scenario::load(&scenario) {
             Ok(loaded) => loaded,
             Err(error) => {
-                let error = error.of_named(&file.scenario);
+                let error = if other.is_some() { error } else { error.of_named(&file.scenario) };
                 self.problems.push(SweepFileProblem { place: error.place(), text: error.to_string() });
                 return None;
             }

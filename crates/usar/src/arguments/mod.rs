@@ -17,5 +17,5 @@ pub(crate) use family::{ComparisonArguments, FamilyArguments};
 pub(crate) use parameters::ParameterArguments;
 pub(crate) use picture::{LookArguments, PictureArguments, PictureFile, width};
 pub(crate) use progress::{ProgressArguments, default_jobs, opened, progress_bar};
-pub(crate) use selection::Selection;
+pub(crate) use selection::{Selection, WorldArgument};
 pub(crate) use trial::{Trial, TrialArguments};

@@ -1,13 +1,18 @@
 //! Which trials of a sweep are run, and what is kept of them.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use experiments::experiment::{Keep, Overrides};
 
 use super::{PoliciesArgument, SetArguments, count, one_seed};
+use crate::library;
 
 /// Which trials of a sweep are run or planned, and what is kept of them.
 #[derive(Debug, Args)]
 pub(crate) struct Selection {
+    #[command(flatten)]
+    world: WorldArgument,
     #[command(flatten)]
     policies: PoliciesArgument,
     /// Trials of each policy, in each case or candidate [default: the file's]
@@ -27,6 +32,14 @@ pub(crate) struct Selection {
     keep: Option<Keep>,
 }
 
+/// In which world a sweep file is run.
+#[derive(Debug, Args)]
+pub(crate) struct WorldArgument {
+    /// Scenario instead of the sweep file's; its name is added to that of the sweep
+    #[arg(long, value_name = "FILE", hide_short_help = true, value_parser = library::path)]
+    pub(crate) scenario: Option<PathBuf>,
+}
+
 impl Selection {
     pub(crate) fn overrides(&self) -> Overrides {
         Overrides {
@@ -36,6 +49,7 @@ impl Selection {
             set: self.set.set.clone(),
             is_checked: self.check,
             keep: self.keep,
+            scenario: self.world.scenario.clone(),
         }
     }
 
@@ -45,6 +59,7 @@ impl Selection {
         let mut add = |flag: &str, value: Option<String>| {
             arguments.extend(value.into_iter().flat_map(|value| [flag.to_owned(), value]));
         };
+        add("--scenario", self.world.scenario.as_ref().map(|path| path.display().to_string()));
         add("--policies", self.policies.policies.clone());
         add("--trials", self.trials.map(|trials| trials.to_string()));
         add("--first-seed", self.first_seed.map(|seed| seed.to_string()));

@@ -239,6 +239,29 @@ fn the_sweep_file_in_the_folder_makes_it_again() {
     assert_eq!(before, again);
 }
 
+#[test]
+fn a_sweep_file_is_run_in_another_scenario() {
+    let folder = place();
+    let here = folder.path();
+    let others = "--scenario leak --set duration_s=20 --trials 1";
+    succeeds(&usar(here, format!("sweep grid.ron {others}").as_str()));
+    let grid = read(&here.join("grid.ron")).replace("\"grid\"", "\"leak\"");
+    std::fs::write(here.join("leak.ron"), grid.replace("short.ron", "usar:/leak.ron")).unwrap();
+    succeeds(&usar(here, "sweep leak.ron --set duration_s=20 --trials 1"));
+    let (other, named) = (here.join("results/grid-leak"), here.join("results/leak"));
+    assert_eq!(files_but(&other), files_but(&named));
+    let message = "error: --scenario: is for a sweep file, and short.ron is a scenario itself";
+    std::fs::remove_file(here.join("short.sweep.ron")).unwrap();
+    refused(here, 2, format!("sweep short.ron {others}").as_str(), &[message]);
+    refused(here, 2, "sweep grid.ron --scenario gone.ron", &["error: gone.ron: "]);
+    refused(
+        here,
+        2,
+        format!("study deceit results/leak {others}").as_str(),
+        &["--scenario: is for a sweep file, and "],
+    );
+}
+
 /// The tables of a folder.
 fn files_but(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let names = ["trials.csv", "rounds.csv", "hashes.csv", "journal.jsonl.gz", "resolved.ron"];

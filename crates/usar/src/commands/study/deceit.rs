@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use experiments::comparison::{digits, short};
 use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay};
-use experiments::experiment::{Experiment, Overrides};
+use experiments::experiment::Experiment;
 use experiments::files::NewFile;
 use experiments::oracle::Objective;
 use experiments::regret::StudyFolder;
@@ -13,7 +13,7 @@ use reports::deceit_figures;
 use reports::table::{between, headed, mean, number, or_dash, right};
 use serde_json::json;
 
-use crate::arguments::{ProgressArguments, ShownArguments};
+use crate::arguments::{ProgressArguments, Selection, ShownArguments};
 use crate::input::read_sweep;
 use crate::library;
 use crate::prelude::*;
@@ -42,8 +42,9 @@ policy has above a draw by number of liars (deceit-above-draw), and how many lia
 Examples:
   usar study deceit scenarios/sweeps/trust-tunnel.ron
   usar study deceit scenarios/sweeps/trust-tunnel.ron --json > tunnel.json
-  usar study regret scenarios/sweeps/trust-tunnel-regret.ron
-  usar study deceit scenarios/sweeps/trust-tunnel.ron --replay results/trust-tunnel-regret")]
+  usar study regret scenarios/sweeps/trust-regret.ron --scenario scenarios/trust/flood.ron
+  usar study deceit scenarios/sweeps/trust-filter.ron --scenario scenarios/trust/flood.ron \
+      --replay results/trust-regret-flood")]
 pub(crate) struct Arguments {
     /// Sweep file (RON), or the folder of a sweep
     #[arg(value_name = "FILE|DIR", value_parser = library::path)]
@@ -55,6 +56,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR")]
     replay: Option<PathBuf>,
     #[command(flatten)]
+    selection: Selection,
+    #[command(flatten)]
     progress: ProgressArguments,
     #[command(flatten)]
     shown: ShownArguments,
@@ -63,15 +66,16 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
         if self.file.is_dir() {
-            let given = [("--replay", self.replay.is_some()), ("--out", self.out.is_some())];
-            if let Some((name, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            let chosen = self.selection.arguments().into_iter().next();
+            let replay = self.replay.as_ref().map(|_| "--replay".to_owned());
+            if let Some(name) = chosen.or(replay).or(self.out.as_ref().map(|_| "--out".to_owned())) {
                 return Err(Failure::input(format!("{name}: is for a sweep file, and not for a folder")));
             }
             let folder = read_sweep(&self.file, registry)?;
             Deceit::check(folder.experiment()).map_err(Failure::input_at(self.file.display()))?;
             return self.print(&folder, out);
         }
-        let experiment = Experiment::load(&self.file, &Overrides::default(), registry)?;
+        let experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
         Deceit::check(&experiment).map_err(Failure::input_at(self.file.display()))?;
         if let Some(folder) = &self.replay {
             return self.replayed(folder, &experiment, out);

@@ -10,7 +10,9 @@ use reports::regret_figures;
 use reports::table::{headed, right};
 use serde_json::json;
 
-use crate::arguments::{MeasureArgument, ProgressArguments, ShownArguments, limit, parse_policy};
+use crate::arguments::{
+    MeasureArgument, ProgressArguments, ShownArguments, WorldArgument, limit, parse_policy,
+};
 use crate::library;
 use crate::prelude::*;
 
@@ -35,6 +37,8 @@ pub(crate) struct Arguments {
     /// Sweep file or scenario (RON), or the folder of a study
     #[arg(value_name = "FILE|DIR", value_parser = library::path)]
     file: PathBuf,
+    #[command(flatten)]
+    world: WorldArgument,
     /// Trials of each policy, in each case or candidate [default: the file's]
     #[arg(long)]
     trials: Option<u32>,
@@ -97,7 +101,8 @@ impl Arguments {
 
     /// Plays the missing trials of the study.
     fn play(&self, registry: &Registry) -> Result<StudyFolder, Failure> {
-        let overrides = Overrides { trials: self.trials, ..Overrides::default() };
+        let overrides =
+            Overrides { trials: self.trials, scenario: self.world.scenario.clone(), ..Overrides::default() };
         let experiment = Experiment::load(&self.file, &overrides, registry)?;
         experiment.check(self.allow_expensive)?;
         let then = self.then.as_deref().map(|text| parse_policy("--then", text, registry)).transpose()?;
