@@ -12,7 +12,8 @@ use std::collections::BTreeMap;
 
 use parry2d::math::{Pose, Vector};
 use rapier2d::dynamics::{
-    GenericJointBuilder, IntegrationParameters, JointAxesMask, JointAxis, RigidBodyBuilder, RigidBodyHandle,
+    GenericJointBuilder, IntegrationParameters, JointAxesMask, JointAxis, RigidBody, RigidBodyBuilder,
+    RigidBodyHandle,
 };
 use rapier2d::geometry::{ColliderBuilder, Group, InteractionGroups, InteractionTestMode};
 use rapier2d::pipeline::PhysicsWorld;
@@ -50,6 +51,13 @@ const THIN_SHARE: f32 = 0.125;
 
 /// Standard gravity, in metres per second squared: the weight with which movable debris rubs on the ground.
 const GRAVITY: f32 = 9.806_65;
+
+/// From this number of robots on, the engine steps only those that can touch something.
+const ISLANDS_FROM: usize = 36;
+
+/// Where the engine's bodies of robots stand that it does not step, and how far from one another, in metres.
+const PARKED_AT: Vector = Vector::splat(-1000.0);
+const PARKED_APART: Vector = Vector::new(0.0, 100.0);
 
 /// Gain with which the ground opposes the sliding of debris, per second, up to the limit of friction: stiff
 /// against any slow push.
@@ -138,6 +146,7 @@ impl Physics {
     /// Restores what snapshots leave out because it does not change.
     pub(crate) fn restore(&mut self, dt: f32, arena: Vector, robots: &[RobotBody]) {
         (self.quiet.dt, self.quiet.arena) = (dt, arena);
+        self.quiet.by_island = robots.len() >= ISLANDS_FROM;
         self.debris_is_awake = self.debris.iter().any(Option::is_some);
         for ((disc, robot), handle) in self.quiet.discs.iter_mut().zip(robots).zip(&self.robots) {
             let body = &self.world.bodies[*handle];
@@ -178,40 +187,42 @@ impl Physics {
     }
 
     /// Advances time by one step. `to_debris` is the distance from a point to the nearest piece of debris, at
-    /// most the given reach, in metres. `pieces_touch` tells whether a piece that can be pushed touches
+    /// most the given reach, in metres, and `to_pushable` to the nearest that can be pushed. `pieces_touch` tells whether a piece that can be pushed touches
     /// another piece, or the border of this arena.
     pub(crate) fn integrate(
         &mut self,
         to_debris: impl Fn(Vector, f32) -> f32,
+        to_pushable: impl Fn(Vector, f32) -> f32,
         pieces_touch: impl FnOnce(Vector) -> bool,
     ) {
-        let is_quiet =
-            !self.debris_is_awake && !pieces_touch(self.quiet.arena) && self.quiet.is_quiet(to_debris);
         self.steps[0] += 1;
-        if is_quiet && !self.is_always_on {
+        if self.is_always_on || self.debris_is_awake || pieces_touch(self.quiet.arena) {
+            self.quiet.take(true);
+        } else if !self.quiet.find_near(to_debris, to_pushable) {
             self.quiet.coast();
-        } else {
-            self.steps[1] += 1;
-            self.step_engine();
+            return;
         }
+        self.steps[1] += 1;
+        self.step_engine();
     }
 
-    /// Lets the engine do a step from where the robots are.
+    /// Lets the engine do a step with the robots that it is to move; the others coast.
     fn step_engine(&mut self) {
         let Self { world, robots, debris, quiet, .. } = self;
-        for (handle, disc) in robots.iter().zip(&quiet.discs) {
-            let body = &mut world.bodies[*handle];
-            if body.translation() != disc.at {
-                body.set_position(Pose::from_translation(disc.at), false);
-            }
-            if body.linvel() != disc.velocity {
-                body.set_linvel(disc.velocity, false);
+        for (i, handle) in robots.iter().enumerate() {
+            if quiet.is_near(i) {
+                put(&mut world.bodies[*handle], &quiet.discs[i]);
+            } else if !world.bodies[*handle].is_sleeping() {
+                park(&mut world.bodies[*handle], i);
             }
         }
+        quiet.coast();
         world.step();
         for (i, handle) in robots.iter().enumerate() {
             let body = &world.bodies[*handle];
-            quiet.moved(i, body.translation(), body.linvel());
+            if quiet.is_near(i) {
+                quiet.moved(i, body.translation(), body.linvel());
+            }
         }
         let is_awake = |handle: &RigidBodyHandle| !world.bodies[*handle].is_sleeping();
         self.debris_is_awake = debris.iter().flatten().any(is_awake);
@@ -248,6 +259,25 @@ impl Physics {
     pub(crate) fn is_broken(&self) -> bool {
         !self.world.quarantine().is_empty()
     }
+}
+
+/// Puts a body where a robot is, if it is not there.
+fn put(body: &mut RigidBody, disc: &Disc) {
+    if body.is_sleeping() {
+        body.wake_up(true);
+    }
+    if body.translation() != disc.at {
+        body.set_position(Pose::from_translation(disc.at), false);
+    }
+    if body.linvel() != disc.velocity {
+        body.set_linvel(disc.velocity, false);
+    }
+}
+
+/// Has the engine leave a robot's body alone, at a place of its own outside the arena.
+fn park(body: &mut RigidBody, number: usize) {
+    body.set_position(Pose::from_translation(PARKED_AT - PARKED_APART * number as f32), false);
+    body.sleep();
 }
 
 /// The engine's world as bytes, for snapshots.

@@ -70,7 +70,7 @@ pub struct Overrides {
     pub is_checked: bool,
     /// What to keep of each trial.
     pub keep: Option<Keep>,
-    /// The scenario of a sweep file, instead of the one that it names. Its name is added to that of the sweep.
+    /// The scenario of a sweep file, instead of the one that it names. Its name is added to the sweep's.
     pub scenario: Option<PathBuf>,
 }
 

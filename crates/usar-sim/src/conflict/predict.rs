@@ -1,61 +1,34 @@
 //! Predicted conflicts: pairs of robots whose preferred velocities would bring them into each other's safety
 //! distance, and the sets that these pairs connect.
 
-use parry2d::math::Vector;
-
 use super::Mover;
 use super::passing::PASSING_RANGE_M;
+use crate::geometry::{ByX, Spot};
 
-/// Robots near one another, by sweep and prune along x.
+/// Robots near one another.
 #[derive(Default)]
 pub(super) struct Neighbours {
-    by_x: Vec<usize>,
-    /// The same robots, in this order.
-    spots: Vec<Spot>,
+    by_x: ByX,
     /// For each robot, those near it: found by [`Self::pair`].
     lists: Vec<Vec<usize>>,
-}
-
-/// A robot where it is.
-#[derive(Clone, Copy)]
-struct Spot {
-    at: Vector,
-    aerial: bool,
 }
 
 impl Neighbours {
     /// Puts the robots in order along x.
     pub(super) fn sort(&mut self, movers: &[Mover]) {
-        if self.by_x.len() != movers.len() {
-            self.by_x = (0..movers.len()).collect();
-        }
-        // The order of the last step is nearly right, so sorting takes linear time.
-        self.by_x.sort_by(|a, b| movers[*a].position.x.total_cmp(&movers[*b].position.x).then(a.cmp(b)));
-        let spot = |mover: &Mover| Spot { at: mover.position, aerial: mover.aerial };
-        self.spots.clear();
-        self.spots.extend(self.by_x.iter().map(|i| spot(&movers[*i])));
+        self.by_x.sort(movers.len(), |i| Spot { at: movers[i].position, is_aerial: movers[i].aerial });
     }
 
-    /// The robots within `range` metres of a point, in no particular order, and whether they fly. Needs
-    /// [`Self::sort`] first.
-    pub(super) fn within(&self, point: Vector, range: f32) -> impl Iterator<Item = (usize, bool)> {
-        let first = self.spots.partition_point(|spot| spot.at.x < point.x - range);
-        let strip = self.by_x[first..].iter().zip(&self.spots[first..]);
-        let strip = strip.take_while(move |(_, spot)| spot.at.x <= point.x + range);
-        let near = strip.filter(move |(_, spot)| (spot.at - point).length_squared() < range * range);
-        near.map(|(i, spot)| (*i, spot.aerial))
-    }
-
-    /// The robots in order along x.
-    pub(super) fn by_x(&self) -> &[usize] {
+    /// The robots in order along x. Needs [`Self::sort`] first.
+    pub(super) fn by_x(&self) -> &ByX {
         &self.by_x
     }
 
     /// Adds the robots of its layer within `range` metres of robot `i` to a list, in no particular order.
     /// Needs [`Self::sort`] first.
     pub(super) fn find(&self, i: usize, me: &Mover, range: f32, list: &mut Vec<usize>) {
-        let near = self.within(me.position, range);
-        list.extend(near.filter(|(j, aerial)| *j != i && *aerial == me.aerial).map(|(j, _)| j));
+        let near = self.by_x.within(me.position, range);
+        list.extend(near.filter(|(j, spot)| *j != i && spot.is_aerial == me.aerial).map(|(j, _)| j));
     }
 
     /// Finds, for each robot that wishes to move, those of its layer that it could meet within the horizon or
@@ -65,19 +38,20 @@ impl Neighbours {
         let range = range(movers, margin, horizon);
         clear(&mut self.lists, movers.len());
         let lists = &mut self.lists;
-        for (at, (a, from)) in self.by_x.iter().zip(&self.spots).enumerate() {
-            let a_wishes = movers[*a].wishes_to_move();
-            for (b, to) in self.by_x[at + 1..].iter().zip(&self.spots[at + 1..]) {
+        let mut rest = self.by_x.iter();
+        while let Some((a, from)) = rest.next() {
+            let a_wishes = movers[a].wishes_to_move();
+            for (b, to) in rest.clone() {
                 let apart = to.at - from.at;
                 if apart.x > range {
                     break;
                 }
-                if from.aerial == to.aerial && apart.length_squared() <= range * range {
+                if from.is_aerial == to.is_aerial && apart.length_squared() <= range * range {
                     if a_wishes {
-                        lists[*a].push(*b);
+                        lists[a].push(b);
                     }
-                    if movers[*b].wishes_to_move() {
-                        lists[*b].push(*a);
+                    if movers[b].wishes_to_move() {
+                        lists[b].push(a);
                     }
                 }
             }

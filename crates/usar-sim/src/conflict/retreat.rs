@@ -165,6 +165,7 @@ impl Retreats {
         }
         let near = |k: &usize| (movers[*k].position - me.position).length();
         let next = neighbours
+            .by_x()
             .within(me.position, PLATOON_M)
             .map(|(k, _)| k)
             .filter(follows)
@@ -221,7 +222,7 @@ impl Retreats {
         let Crowd { rules, movers, neighbours } = crowd;
         let (me, head) = (&movers[blocker], &movers[i]);
         let others = || {
-            let near = neighbours.within(me.position, CROWD_RANGE_M).map(|(k, _)| (k, &movers[k]));
+            let near = neighbours.by_x().within(me.position, CROWD_RANGE_M).map(|(k, _)| (k, &movers[k]));
             near.filter(|(k, other)| *k != i && *k != blocker && other.aerial == me.aerial)
         };
         let disc = |at: Vector, other: &Mover| (at, me.radius + other.radius);

@@ -33,7 +33,7 @@ fn nobody_gets_through_the_thinnest_wall_at_the_highest_speed() {
         for _ in 0..500 {
             let (_, velocity) = world.robot_motion(RobotId(0));
             world.drive(RobotId(0), (wished - velocity).clamp_length_max(100.0 * DT));
-            world.integrate(|_, _| 0.0, |_| false);
+            world.integrate(|_, _| 0.0, |_, _| 0.0, |_| false);
             farthest = farthest.max(world.robot_motion(RobotId(0)).0.x);
         }
         let touching = 20.0 - thinnest / 2.0 - RADIUS;
@@ -48,7 +48,7 @@ fn a_piece_that_slides_is_braked_by_friction_whatever_its_mass() {
         let handle = world.debris[0].unwrap();
         let speed: f32 = 3.0;
         world.world.bodies[handle].set_linvel(Vector::new(speed, 0.0), true);
-        (0..200).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
+        (0..200).for_each(|_| world.integrate(|_, _| 0.0, |_, _| 0.0, |_| false));
         let way = world.debris_poses().next().unwrap().1.translation.x - 15.0;
         let expected = speed * speed / (2.0 * friction * GRAVITY);
         assert!((way - expected).abs() < 0.05 * expected + 0.02, "{mass} kg: {way} m, not {expected} m");
@@ -61,7 +61,7 @@ fn a_piece_is_pushed_by_more_than_its_friction_only() {
         let mut world = world(1.0, &cuboid([1.0, 1.0], [15.0, 5.0]), Some([20.0, 0.5]));
         let handle = world.debris[0].unwrap();
         world.world.bodies[handle].add_force(Vector::new(newton, 0.0), true);
-        (0..100).for_each(|_| world.integrate(|_, _| 0.0, |_| false));
+        (0..100).for_each(|_| world.integrate(|_, _| 0.0, |_, _| 0.0, |_| false));
         world.debris_poses().next().unwrap().1.translation.x - 15.0
     };
     let limit = 0.5 * 20.0 * GRAVITY;
@@ -69,4 +69,95 @@ fn a_piece_is_pushed_by_more_than_its_friction_only() {
     let expected = 0.5 * (0.5 * limit / 20.0) * 2.0 * 2.0; // half the limit is left to accelerate 20 kg for 2 s
     let way = way_pushed_by(1.5 * limit);
     assert!((way - expected).abs() < 0.05 * expected, "{way} m, not {expected} m");
+}
+
+/// A dense crowd among boxes, in which each robot heads for one place after another and gives way to nobody.
+struct Crowd {
+    world: Physics,
+    bodies: Vec<RobotBody>,
+    boxes: Vec<Outline>,
+}
+
+const ARENA: Vector = Vector::splat(30.0);
+
+impl Crowd {
+    fn new(count: usize) -> Self {
+        let place = |i: usize| Vector::new(1.0 + (i % 10) as f32 * 1.9, 1.0 + (i / 10) as f32 * 1.9);
+        let body = |i: usize| RobotBody {
+            position: place(i),
+            is_aerial: i.is_multiple_of(5),
+            radius: 0.3 + 0.02 * (i % 4) as f32,
+            mass: 20.0 + i as f32,
+            top_speed: 1.5,
+        };
+        let bodies: Vec<RobotBody> = (0..count).map(body).collect();
+        let boxes = vec![cuboid([2.0, 1.0], [6.0, 16.0]), cuboid([1.0, 3.0], [14.0, 15.0])];
+        let pieces: Vec<DebrisBody> = boxes
+            .iter()
+            .map(|outline| DebrisBody { outline: outline.clone(), is_gate: false, masses: None })
+            .collect();
+        Self { world: Physics::new(DT, ARENA, &bodies, &pieces), bodies, boxes }
+    }
+
+    fn step(&mut self, step: usize) {
+        for i in 0..self.bodies.len() {
+            let goal = (i * 37 + step / 200 * 53) % 900;
+            let goal = Vector::new((goal % 30) as f32, (goal / 30) as f32);
+            let (at, velocity) = self.world.robot_motion(RobotId(i as u32));
+            let wished = (goal - at).clamp_length_max(1.5);
+            self.world.drive(RobotId(i as u32), (wished - velocity).clamp_length_max(DT));
+        }
+        let boxes = &self.boxes;
+        let to_boxes = |at: Vector, reach: f32| {
+            let distance = |piece: &Outline| piece.shape.distance_to_point(&piece.pose, at, true);
+            boxes.iter().map(distance).fold(reach, f32::min)
+        };
+        self.world.integrate(to_boxes, |_, reach| reach, |_| false);
+    }
+
+    /// How deep two robots of one layer are in each other at most, in metres.
+    fn overlap(&self) -> f32 {
+        let at = |i: usize| self.world.robot_motion(RobotId(i as u32)).0;
+        let pairs = (0..self.bodies.len()).flat_map(|i| (0..i).map(move |j| [i, j]));
+        let in_layer = pairs.filter(|[i, j]| self.bodies[*i].is_aerial == self.bodies[*j].is_aerial);
+        let depth =
+            |[i, j]: [usize; 2]| self.bodies[i].radius + self.bodies[j].radius - (at(i) - at(j)).length();
+        in_layer.map(depth).fold(0.0, f32::max)
+    }
+}
+
+#[test]
+fn a_large_team_is_stepped_in_part_and_moves_as_one_that_is_stepped_as_a_whole() {
+    let (mut part, mut whole) = (Crowd::new(60), Crowd::new(60));
+    whole.world.keep_engine_on();
+    let (mut stepped, mut farthest_apart, mut deepest) = (0, 0.0_f32, [0.0_f32; 2]);
+    for step in 0..3000 {
+        part.step(step);
+        whole.step(step);
+        stepped += (0..60).filter(|i| part.world.quiet.is_near(*i)).count();
+        deepest = [deepest[0].max(part.overlap()), deepest[1].max(whole.overlap())];
+        let apart = |i: u32| part.world.robot_motion(RobotId(i)).0 - whole.world.robot_motion(RobotId(i)).0;
+        if step < 100 {
+            farthest_apart = (0..60).map(|i| apart(i).length()).fold(farthest_apart, f32::max);
+        }
+    }
+    assert!(part.world.steps()[1] > 1000, "{:?}", part.world.steps());
+    assert!(stepped < 3000 * 60 / 2, "{stepped}");
+    assert!(farthest_apart < 0.001, "{farthest_apart} m");
+    assert!(deepest[0] < 0.003 && deepest[0] < deepest[1], "{deepest:?} m");
+}
+
+#[test]
+fn a_large_team_goes_on_from_a_snapshot_with_the_same_bits() {
+    let mut crowd = Crowd::new(60);
+    let mut again = Crowd::new(60);
+    for step in 0..3000 {
+        if step % 250 == 130 {
+            again.world = postcard::from_bytes(&postcard::to_stdvec(&crowd.world).unwrap()).unwrap();
+            again.world.restore(DT, ARENA, &again.bodies);
+        }
+        crowd.step(step);
+        again.step(step);
+        assert!(crowd.world.motions() == again.world.motions(), "step {step}");
+    }
 }

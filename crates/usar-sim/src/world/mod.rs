@@ -86,11 +86,13 @@ impl World {
     /// Advances time by one step and reads back all positions. `step` is the number of steps done then.
     pub(crate) fn integrate(&mut self, step: u64) {
         let Self { physics, debris, debris_places, touching, .. } = self;
-        let to_debris = |at: Vector, reach: f32| {
-            let near = debris_places.near(at, reach);
-            near.into_iter().map(|number| debris[number].distance_to(at)).fold(reach, f32::min)
+        let nearest = |at: Vector, reach: f32, counts: fn(&Debris) -> bool| {
+            let near = debris_places.near(at, reach).into_iter().map(|number| &debris[number]);
+            near.filter(|piece| counts(piece)).map(|piece| piece.distance_to(at)).fold(reach, f32::min)
         };
-        physics.integrate(to_debris, |arena| {
+        let to_debris = |at: Vector, reach: f32| nearest(at, reach, |_| true);
+        let to_pushable = |at: Vector, reach: f32| nearest(at, reach, |piece| piece.masses.is_some());
+        physics.integrate(to_debris, to_pushable, |arena| {
             *touching.get_or_insert_with(|| any_touches(debris, debris_places, arena))
         });
         for robot in &mut self.robots {

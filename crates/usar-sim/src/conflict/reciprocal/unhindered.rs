@@ -68,7 +68,7 @@ impl Unhindered {
     /// not matter.
     pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, range: f32) {
         self.courses.clear();
-        self.courses.extend(neighbours.by_x().iter().map(|i| Course::of(*i, &movers[*i])));
+        self.courses.extend(neighbours.by_x().iter().map(|(i, _)| Course::of(i, &movers[i])));
         self.is_free.clear();
         self.is_free.resize(movers.len(), true);
         let farthest = self.courses.iter().map(|course| course.reach).fold(0.0, f32::max);
