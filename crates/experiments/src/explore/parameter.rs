@@ -22,18 +22,25 @@ pub struct Parameter {
     is_log: bool,
     /// Whether its fields take whole numbers only.
     is_whole: bool,
+    /// What its one field may be, in RON, if it is no number: the parameter is the place in this list.
+    choices: Vec<String>,
 }
 
 impl Parameter {
-    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`; `[*]` in a path is every entry of a list.
+    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`, or `PATH=[VALUE, VALUE, ...]` for a field that is
+    /// no number; `[*]` in a path is every entry of a list.
     /// `fields` are the fields that the scenario writes; each path must be one of them. `known` are all
     /// fields that a scenario has.
     ///
     /// # Errors
     /// The text has another form, the scenario lacks a path, or the range cannot be searched.
     pub fn parse(spec: &str, fields: &Node, known: &Node) -> Result<Self, Failure> {
+        if let Some((path, list)) = spec.split_once('=').filter(|(_, list)| list.trim().starts_with('[')) {
+            return Self::of_choices(path.trim(), list, fields, known);
+        }
         let form = || {
-            let rule = "must be 'PATH=LOW..HIGH' or 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers";
+            let rule = "must be 'PATH=LOW..HIGH', 'PATH + PATH*RATIO=LOW..HIGH log' with finite numbers, or \
+                'PATH=[VALUE, VALUE]'";
             Failure::input(format!("{rule}, found {spec:?}"))
         };
         let (paths, range) = spec.rsplit_once('=').ok_or_else(form)?;
@@ -71,14 +78,29 @@ impl Parameter {
             }
             named.extend(matching);
         }
-        Ok(Self { name, fields: named, low, high, is_log, is_whole: false })
+        Ok(Self { name, fields: named, low, high, is_log, is_whole: false, choices: Vec::new() })
+    }
+
+    /// The parameter of a field that is one of these values.
+    fn of_choices(path: &str, list: &str, fields: &Node, known: &Node) -> Result<Self, Failure> {
+        let choices = Node::parse(list).map_err(Failure::input_at(path))?;
+        let choices: Vec<String> = choices.children().map(ToString::to_string).collect();
+        if choices.len() < 2 {
+            refuse!("{path}: must have at least two values to choose from, found {list}");
+        }
+        if fields.get(path).is_none() {
+            return Err(not_there(path, known));
+        }
+        let (name, high) = (path.to_owned(), (choices.len() - 1) as f64);
+        let fields = vec![(name.clone(), 1.0)];
+        Ok(Self { name, fields, low: 0.0, high, is_log: false, is_whole: true, choices })
     }
 
     /// The same parameter for this scenario. If one of its fields takes whole numbers only, its values are
     /// rounded to whole numbers.
     #[must_use]
     pub fn in_scenario(self, base: &ScenarioFile) -> Self {
-        let is_whole = self.whole_numbers(base).is_some();
+        let is_whole = self.is_whole || self.whole_numbers(base).is_some();
         Self { is_whole, ..self }
     }
 
@@ -117,8 +139,10 @@ impl Parameter {
 
     /// The parameter's fields, each with its value in RON.
     pub fn settings(&self, value: f64) -> impl Iterator<Item = (&str, String)> {
-        let text = |value: f64| {
-            if self.is_whole { format!("{value:.0}") } else { in_ron(rounded(value)) }
+        let text = |value: f64| match self.choices.get(value as usize) {
+            Some(choice) => choice.clone(),
+            None if self.is_whole => format!("{value:.0}"),
+            None => in_ron(rounded(value)),
         };
         self.fields.iter().map(move |(path, ratio)| (path.as_str(), text(value * ratio)))
     }
@@ -139,17 +163,25 @@ impl Parameter {
 
     /// What a search has found for the parameter, in words.
     pub fn found(&self, value: f64) -> String {
+        if let Some(choice) = self.choices.get(value as usize) {
+            return format!("{} = {choice} (of {})", self.name, self.choices.join(", "));
+        }
         let end = if self.is_at_end(value) { "; it is at the end of its range" } else { "" };
         format!("{} = {value} (searched from {} to {}{end})", self.name, self.low, self.high)
     }
 
-    /// The parameter's present value, computed from its first field.
+    /// The parameter's present value, computed from its first field; the first of its values where the field is
+    /// none of them.
     ///
     /// # Errors
     /// The first field is not a number.
     pub fn present(&self, tree: &Node) -> Result<f64, Failure> {
         let (path, ratio) = &self.fields[0];
         let written = tree.get(path).map(ToString::to_string).unwrap_or_default();
+        if !self.choices.is_empty() {
+            let place = self.choices.iter().position(|choice| *choice == written);
+            return Ok(place.unwrap_or_default() as f64);
+        }
         let not_number = |_| Failure::input(format!("{path}: must be a number, found {written}"));
         written.parse::<f64>().map(|value| value / ratio).map_err(not_number)
     }
@@ -177,6 +209,9 @@ impl fmt::Display for Parameter {
         let fields = self.fields.iter().map(|(path, ratio)| format!("{path} * {ratio}"));
         let fields: Vec<String> = fields.collect();
         let scale = if self.is_log { " log" } else { "" };
+        if !self.choices.is_empty() {
+            return write!(f, "{} = [{}]", self.name, self.choices.join(", "));
+        }
         write!(f, "{} = {}..{}{scale}", fields.join(" + "), self.low, self.high)
     }
 }
@@ -246,6 +281,19 @@ mod tests {
     }
 
     #[test]
+    fn a_field_that_is_no_number_is_one_of_some_values() {
+        let speed = free("roles.a=[(v: 1.0), (v: 3.0), (v: 9.0)]").unwrap();
+        let text = |value: f64| speed.settings(value).next().unwrap().1;
+        assert_eq!(
+            [0.0, 0.4, 1.0].map(|place| text(speed.value(place))),
+            ["(v: 1.0)", "(v: 3.0)", "(v: 9.0)"]
+        );
+        assert_eq!(speed.present(&Node::parse(TEXT).unwrap()).unwrap(), 1.0);
+        assert_eq!(speed.found(2.0), "roles.a = (v: 9.0) (of (v: 1.0), (v: 3.0), (v: 9.0))");
+        assert_eq!(speed.to_string(), "roles.a = [(v: 1.0), (v: 3.0), (v: 9.0)]");
+    }
+
+    #[test]
     fn a_range_is_mirrored_at_its_ends() {
         let linear = free("roles.a.v=1..3").unwrap();
         assert_eq!(
@@ -272,6 +320,8 @@ mod tests {
             ("roles.a.v*0=1..2", "a ratio must be above 0"),
             ("roles.c.v=0..1", "roles.c.v is no field; did you mean a? roles has a, b"),
             ("roles.a.w=0..1", "roles.a.w: is not written in the scenario"),
+            ("roles.a=[(v: 1.0)]", "roles.a: must have at least two values"),
+            ("roles.d=[1, 2]", "roles.d is no field"),
             ("roles.a=0..1", "roles.a: is not a number but has parts: v, w"),
         ] {
             let error = free(spec).unwrap_err().to_string();

@@ -34,7 +34,9 @@ Examples:
   usar search scenarios/paper.ron --policy RNE --against DIS \\
       --over mission.rest_s=0..60 --over 'radiation[*].radius_m=3..9'
   usar search scenarios/paper.ron --policy RNE --metric rescuees.hard --over 'debris.count=0..40'
-  usar search scenarios/paper.ron --policy RNE --metric distance --highest --over mission.rest_s=0..60")]
+  usar search scenarios/paper.ron --policy RNE --metric distance --highest --over mission.rest_s=0..60
+  usar search scenarios/trust/tunnel.ron --policy HP_DIS --over 'deceit[0].lie=[Complement, Stuck, Copycat]' \
+      --set 'deceit=[(who: Count(4), lie: Stuck, on: [Hp])]'")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     parameters: ParameterArguments,
