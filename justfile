@@ -143,8 +143,18 @@ results:
     for world in tunnel convoy aftershocks; do target/release/usar sweep scenarios/sweeps/lies.ron --scenario scenarios/trust/$world.ron; done
     target/release/usar sweep scenarios/sweeps/lies-field.ron
     target/release/usar study deceit scenarios/sweeps/trust-tunnel.ron
-    target/release/usar study regret scenarios/sweeps/trust-regret.ron --scenario scenarios/trust/tunnel.ron
+    for world in trust/tunnel trust/convoy trust/aftershocks trust/avalanche trust/flood leak paper-calibrated; do just matrix scenarios/$world.ron; done
     target/release/usar study deceit scenarios/sweeps/trust-convoy.ron
+
+# Estimators behind rules against lies in one world (docs/whom-to-believe.md): the filter, and fresh pairs of what it names; an hour
+matrix world:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    PATH=$PWD/target/release:$PATH
+    study=results/trust-regret-$(basename {{world}} .ron)
+    usar study regret scenarios/sweeps/trust-regret.ron --scenario {{world}}
+    usar study deceit scenarios/sweeps/trust-filter.ron --scenario {{world}} --replay "$study" --json > "$study/filter.json"
+    bash -c "$(python3 docs/trust/named.py {{world}} < "$study/filter.json")"
 
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:
