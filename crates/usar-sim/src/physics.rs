@@ -3,7 +3,7 @@
 //! Bodies in a plane seen from above, without gravity. Ground robots are discs that touch walls, debris and
 //! each other. Aerial robots touch walls and each other. Debris is fixed, or rubs on the ground with Coulomb
 //! friction. The engine runs only in steps in which something can touch or slides. In the others, robots
-//! coast to the same places, bit for bit (`quiet.rs`).
+//! coast to the same places, bit for bit; in a large team, so do those that can touch nothing (`quiet.rs`).
 
 #[cfg(test)]
 mod tests;
@@ -52,7 +52,8 @@ const THIN_SHARE: f32 = 0.125;
 /// Standard gravity, in metres per second squared: the weight with which movable debris rubs on the ground.
 const GRAVITY: f32 = 9.806_65;
 
-/// From this number of robots on, the engine steps only those that can touch something.
+/// From this number of robots on, the engine steps only those that can touch something. In a smaller team, that
+/// would save little.
 const ISLANDS_FROM: usize = 36;
 
 /// Where the engine's bodies of robots stand that it does not step, and how far from one another, in metres.
@@ -147,7 +148,7 @@ impl Physics {
     pub(crate) fn restore(&mut self, dt: f32, arena: Vector, robots: &[RobotBody]) {
         (self.quiet.dt, self.quiet.arena) = (dt, arena);
         self.quiet.by_island = robots.len() >= ISLANDS_FROM;
-        self.debris_is_awake = self.debris.iter().any(Option::is_some);
+        self.debris_is_awake = is_awake(&self.world, &self.debris);
         for ((disc, robot), handle) in self.quiet.discs.iter_mut().zip(robots).zip(&self.robots) {
             let body = &self.world.bodies[*handle];
             let masses = [body.mass(), body.mass_properties().local_mprops.inv_mass];
@@ -155,7 +156,12 @@ impl Physics {
         }
     }
 
-    /// Has the engine run in every step: the reference for quiet steps.
+    /// Has the engine step the whole team, however large, in steps in which it runs.
+    pub(crate) fn step_whole_team(&mut self) {
+        self.quiet.by_island = false;
+    }
+
+    /// Has the engine run in every step, for everybody: the reference for quiet steps.
     pub(crate) fn keep_engine_on(&mut self) {
         self.is_always_on = true;
     }
@@ -187,8 +193,8 @@ impl Physics {
     }
 
     /// Advances time by one step. `to_debris` is the distance from a point to the nearest piece of debris, at
-    /// most the given reach, in metres, and `to_pushable` to the nearest that can be pushed. `pieces_touch` tells whether a piece that can be pushed touches
-    /// another piece, or the border of this arena.
+    /// most the given reach, in metres, and `to_pushable` to the nearest that can be pushed. `pieces_touch` tells
+    /// whether a piece that can be pushed touches another piece, or the border of this arena.
     pub(crate) fn integrate(
         &mut self,
         to_debris: impl Fn(Vector, f32) -> f32,
@@ -224,8 +230,7 @@ impl Physics {
                 quiet.moved(i, body.translation(), body.linvel());
             }
         }
-        let is_awake = |handle: &RigidBodyHandle| !world.bodies[*handle].is_sleeping();
-        self.debris_is_awake = debris.iter().flatten().any(is_awake);
+        self.debris_is_awake = is_awake(world, debris);
         if self.debris_is_awake {
             quiet.forget();
         }
@@ -259,6 +264,11 @@ impl Physics {
     pub(crate) fn is_broken(&self) -> bool {
         !self.world.quarantine().is_empty()
     }
+}
+
+/// Whether the engine has a piece of movable debris awake.
+fn is_awake(world: &PhysicsWorld, debris: &[Option<RigidBodyHandle>]) -> bool {
+    debris.iter().flatten().any(|handle| !world.bodies[*handle].is_sleeping())
 }
 
 /// Puts a body where a robot is, if it is not there.

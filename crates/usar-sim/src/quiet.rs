@@ -16,12 +16,16 @@ use crate::geometry::{ByX, Spot};
 /// Bodies with at least this gap, in metres, beyond the way that they go in a step, do not touch.
 const GAP_M: f32 = 0.005;
 
-/// Things farther than this from a robot are not measured, in metres: alone in a small team, and in a large one.
+/// Things farther than this from a robot are not measured, in metres: in a small team, and in a large one.
 const REACH_M: [f32; 2] = [4.0, 1.0];
 
 /// Ways are taken for longer by this share, and by the next constant in metres: what comes of rounding.
 const ROUNDING: f32 = 1.01;
 const ROUNDING_M: f32 = 1.0e-5;
+
+/// How many times as fast as the fastest robot a robot may be pushed, on the safe side: from the side, by a
+/// robot as fast as itself, it gets 1.41 times as fast.
+const PUSHED: f32 = 2.0;
 
 /// Parts of a step in which the engine moves bodies.
 const PARTS: u8 = 4;
@@ -66,7 +70,6 @@ pub(crate) struct Quiet {
     /// The budget of each robot, in metres. Budgets only save time: those that are missing are measured.
     #[serde(skip)]
     budgets: Vec<f32>,
-    /// In order where a robot was measured in this step.
     /// Whether each robot moves with the engine in this step.
     #[serde(skip)]
     near: Vec<bool>,
@@ -76,9 +79,10 @@ pub(crate) struct Quiet {
     /// The greatest radius, in metres.
     #[serde(skip)]
     largest: f32,
-    /// The robots of a large team in order along x, from the first measurement of a step on.
+    /// The robots of a large team in order along x.
     #[serde(skip)]
     by_x: ByX,
+    /// Whether they are in the order of this step: from its first measurement on.
     #[serde(skip)]
     is_sorted: bool,
 }
@@ -122,11 +126,10 @@ impl Quiet {
     }
 
     /// Adds the robots that those so far could push in this step, those that these could push, and so on.
-    /// Nobody is pushed to a higher speed than that of the fastest robot. Returns whether all are found: what a
-    /// piece of debris pushes is not looked for.
+    /// Returns whether all are found: what a piece of debris pushes is not looked for.
     fn add_pushed(&mut self, to_pushable: impl Fn(Vector, f32) -> f32) -> bool {
         let speeds = self.discs.iter().map(|disc| disc.velocity.length_squared());
-        let way = GAP_M + 2.0 * speeds.fold(0.0, f32::max).sqrt() * self.dt * ROUNDING;
+        let way = GAP_M + (1.0 + PUSHED) * speeds.fold(0.0, f32::max).sqrt() * self.dt * ROUNDING;
         self.open.iter().for_each(|i| self.near[*i] = true);
         while let Some(i) = self.open.pop() {
             let me = self.discs[i];
@@ -170,7 +173,7 @@ impl Quiet {
         let debris = if me.fixed.is_aerial { reach } else { to_debris(me.at, reach) };
         let fixed = inside.min(debris).min(reach) - me.fixed.radius;
         let is_clear = fixed > self.least(i); // false where a number is not finite: the engine tells
-        self.sort();
+        self.sort(); // also for those who look for what this robot could push
         if !is_clear {
             return false;
         }

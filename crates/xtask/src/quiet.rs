@@ -19,7 +19,7 @@ pub fn both_ways(scenario: &Scenario, seed: u64) -> Option<BothWays> {
         let steps = trial.world().physics.steps();
         (trial.finish().chain, steps)
     };
-    let (quick, steps) = run(Simulation::new(scenario, seed).ok()?);
+    let (quick, steps) = run(Simulation::new(scenario, seed).ok()?.with_whole_team_stepped());
     let (always, _) = run(Simulation::new(scenario, seed).ok()?.with_engine_always_on());
     let mut pairs = quick.links().iter().zip(always.links());
     let differs_at = pairs.find(|(a, b)| a.digest != b.digest).map(|(link, _)| link.step);

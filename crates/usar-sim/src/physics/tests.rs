@@ -80,6 +80,9 @@ struct Crowd {
 
 const ARENA: Vector = Vector::splat(30.0);
 
+/// Which of the boxes can be pushed.
+const PUSHABLE: usize = 1;
+
 impl Crowd {
     fn new(count: usize) -> Self {
         let place = |i: usize| Vector::new(1.0 + (i % 10) as f32 * 1.9, 1.0 + (i / 10) as f32 * 1.9);
@@ -91,11 +94,12 @@ impl Crowd {
             top_speed: 1.5,
         };
         let bodies: Vec<RobotBody> = (0..count).map(body).collect();
-        let boxes = vec![cuboid([2.0, 1.0], [6.0, 16.0]), cuboid([1.0, 3.0], [14.0, 15.0])];
-        let pieces: Vec<DebrisBody> = boxes
-            .iter()
-            .map(|outline| DebrisBody { outline: outline.clone(), is_gate: false, masses: None })
-            .collect();
+        let boxes = vec![cuboid([2.0, 1.0], [6.0, 16.0]), cuboid([0.6, 0.6], [24.0, 24.0])];
+        let piece = |(i, outline): (usize, &Outline)| {
+            let masses = (i == PUSHABLE).then_some([10.0, 5.0]);
+            DebrisBody { outline: outline.clone(), is_gate: false, masses }
+        };
+        let pieces: Vec<DebrisBody> = boxes.iter().enumerate().map(piece).collect();
         Self { world: Physics::new(DT, ARENA, &bodies, &pieces), bodies, boxes }
     }
 
@@ -107,12 +111,19 @@ impl Crowd {
             let wished = (goal - at).clamp_length_max(1.5);
             self.world.drive(RobotId(i as u32), (wished - velocity).clamp_length_max(DT));
         }
+        for (number, pose) in self.world.debris_poses() {
+            self.boxes[number].pose = pose;
+        }
         let boxes = &self.boxes;
         let to_boxes = |at: Vector, reach: f32| {
             let distance = |piece: &Outline| piece.shape.distance_to_point(&piece.pose, at, true);
             boxes.iter().map(distance).fold(reach, f32::min)
         };
-        self.world.integrate(to_boxes, |_, reach| reach, |_| false);
+        let to_pushable = |at: Vector, reach: f32| {
+            let piece = &boxes[PUSHABLE];
+            piece.shape.distance_to_point(&piece.pose, at, true).min(reach)
+        };
+        self.world.integrate(to_boxes, to_pushable, |_| false);
     }
 
     /// How deep two robots of one layer are in each other at most, in metres.
@@ -155,6 +166,7 @@ fn a_large_team_goes_on_from_a_snapshot_with_the_same_bits() {
         if step % 250 == 130 {
             again.world = postcard::from_bytes(&postcard::to_stdvec(&crowd.world).unwrap()).unwrap();
             again.world.restore(DT, ARENA, &again.bodies);
+            again.boxes.clone_from(&crowd.boxes);
         }
         crowd.step(step);
         again.step(step);

@@ -123,6 +123,14 @@ impl Simulation {
         self
     }
 
+    /// The same trial with the engine at work for the whole team in steps in which it runs, however large the
+    /// team is: what [`Self::with_engine_always_on`] is compared with.
+    #[must_use]
+    pub fn with_whole_team_stepped(mut self) -> Self {
+        self.state.world.physics.step_whole_team();
+        self
+    }
+
     /// The same trial, with the work of a step divided over all threads where the team is large (500 robots).
     /// The result is the same bit for bit.
     #[must_use]
