@@ -57,7 +57,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "CSV")]
     target: PathBuf,
     /// A parameter and its range: `PATH=LOW..HIGH`; `PATH + PATH*RATIO=LOW..HIGH log` sets several fields and
-    /// goes by factors; `[*]` is every entry of a list; can be given several times
+    /// goes by factors; `[*]` is every entry of a list; `PATH=[VALUE, VALUE]` chooses; can be given several
+    /// times
     #[arg(long, value_name = "PATH=LOW..HIGH", required_unless_present = "choose")]
     over: Vec<String>,
     #[command(flatten)]
