@@ -52,8 +52,8 @@ const THIN_SHARE: f32 = 0.125;
 /// Standard gravity, in metres per second squared: the weight with which movable debris rubs on the ground.
 const GRAVITY: f32 = 9.806_65;
 
-/// From this number of robots on, the engine steps only those that can touch something. In a smaller team, that
-/// would save little.
+/// From this number of robots on, the engine steps only those that can touch something. In a smaller team,
+/// that would save little.
 const ISLANDS_FROM: usize = 36;
 
 /// Where the engine's bodies of robots stand that it does not step, and how far from one another, in metres.

@@ -27,9 +27,9 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`, or `PATH=[VALUE, VALUE, ...]` for a field that is
-    /// no number; `[*]` in a path is every entry of a list.
-    /// `fields` are the fields that the scenario writes; each path must be one of them. `known` are all
+    /// Reads `PATH[*RATIO] [+ PATH[*RATIO] ...]=LOW..HIGH[ log]`, or `PATH=[VALUE, VALUE, ...]` for a field
+    /// that is no number; `[*]` in a path is every entry of a list. `fields` are the fields that the scenario
+    /// writes; each path must be one of them. `known` are all
     /// fields that a scenario has.
     ///
     /// # Errors
@@ -170,8 +170,8 @@ impl Parameter {
         format!("{} = {value} (searched from {} to {}{end})", self.name, self.low, self.high)
     }
 
-    /// The parameter's present value, computed from its first field; the first of its values where the field is
-    /// none of them.
+    /// The parameter's present value, computed from its first field. A field with another value than those to
+    /// choose from counts as the first of them.
     ///
     /// # Errors
     /// The first field is not a number.

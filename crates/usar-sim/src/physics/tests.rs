@@ -162,14 +162,18 @@ fn a_large_team_is_stepped_in_part_and_moves_as_one_that_is_stepped_as_a_whole()
 fn a_large_team_goes_on_from_a_snapshot_with_the_same_bits() {
     let mut crowd = Crowd::new(60);
     let mut again = Crowd::new(60);
+    let mut asleep = 0;
     for step in 0..3000 {
         if step % 250 == 130 {
             again.world = postcard::from_bytes(&postcard::to_stdvec(&crowd.world).unwrap()).unwrap();
             again.world.restore(DT, ARENA, &again.bodies);
             again.boxes.clone_from(&crowd.boxes);
+            assert_eq!(again.world.debris_is_awake, crowd.world.debris_is_awake, "step {step}");
+            asleep += usize::from(!crowd.world.debris_is_awake);
         }
         crowd.step(step);
         again.step(step);
         assert!(crowd.world.motions() == again.world.motions(), "step {step}");
     }
+    assert!(asleep > 0, "the piece was never asleep");
 }
