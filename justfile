@@ -144,6 +144,7 @@ results:
     target/release/usar sweep scenarios/sweeps/lies-field.ron
     target/release/usar study deceit scenarios/sweeps/trust-tunnel.ron
     for world in trust/tunnel trust/convoy trust/aftershocks trust/avalanche trust/flood leak paper-calibrated; do just matrix scenarios/$world.ron; done
+    for world in avalanche flood; do target/release/usar study deceit scenarios/sweeps/trust-fresh.ron --scenario scenarios/trust/$world.ron --policies RANDOM,RNE --out results/trust-helped-$world; done
     target/release/usar study deceit scenarios/sweeps/trust-convoy.ron
 
 # Estimators behind rules against lies in one world (docs/whom-to-believe.md): the filter, and fresh pairs of what it names; an hour
