@@ -2,13 +2,15 @@
 
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
-use smallvec::SmallVec;
 
 use super::obstacles::{KnownObstacle, contains, crosses, nearest_border_point};
 use super::{ObstacleMap, Route};
 
 /// Least distance between two places of a route at which its width is examined, in metres.
 const SAMPLE_M: f32 = 0.15;
+
+/// The obstacles near a route are looked up for so much of it at a time, in metres.
+const STRETCH_M: f32 = 8.0;
 
 /// Room that two robots side by side need beyond their diameters, in metres.
 const SPARE_M: f32 = 0.05;
@@ -46,14 +48,20 @@ impl Walls<'_> {
     /// The narrow passages of a route from a position, in order.
     pub(crate) fn passages(&self, from: Vector, route: &Route) -> Vec<Passage> {
         let mut passages: Vec<Passage> = Vec::new();
+        let mut near: Vec<&KnownObstacle> = Vec::new();
         let mut left = route.length(from);
         for (a, b) in route.legs(from) {
             let length = (b - a).length();
             let along = (b - a).normalize_or_zero();
-            let mut at = 0.0;
+            let (mut at, mut looked_to) = (0.0, 0.0);
             while at < length {
                 let point = a + along * at;
-                let (is_narrow, skip) = self.look(point, along);
+                if at >= looked_to {
+                    looked_to = at + STRETCH_M;
+                    near.clear();
+                    near.extend(self.known.beside(point, point + along * STRETCH_M, self.range()));
+                }
+                let (is_narrow, skip) = self.look(point, along, &near);
                 if is_narrow {
                     self.add(&mut passages, point, left - at);
                 }
@@ -76,10 +84,20 @@ impl Walls<'_> {
         }
     }
 
+    /// Room that two robots need side by side, in metres.
+    fn needed(&self) -> f32 {
+        2.0 * self.radius + SPARE_M
+    }
+
+    /// Distance from a point within which obstacles matter there, in metres.
+    fn range(&self) -> f32 {
+        (2.0 * self.needed()).max(BAY_DEPTH_M)
+    }
+
     /// Whether a route in this direction is narrow at a point, and the distance from the point within which
-    /// it is not, in metres.
-    fn look(&self, point: Vector, along: Vector) -> (bool, f32) {
-        let needed = 2.0 * self.radius + SPARE_M;
+    /// it is not, in metres. All obstacles that matter are in `near`.
+    fn look(&self, point: Vector, along: Vector, near: &[&KnownObstacle]) -> (bool, f32) {
+        let (needed, range) = (self.needed(), self.range());
         let mut gaps = [f32::INFINITY; 2];
         let mut nearest = f32::INFINITY;
         let mut note = |offset: Vector| {
@@ -96,13 +114,11 @@ impl Walls<'_> {
         note(Vector::new(high.x - point.x, 0.0));
         note(Vector::new(0.0, low.y - point.y));
         note(Vector::new(0.0, high.y - point.y));
-        let mut near: SmallVec<[&KnownObstacle; 8]> =
-            self.known.near(point, (2.0 * needed).max(BAY_DEPTH_M)).collect();
-        near.sort_unstable_by_key(|obstacle| obstacle.key);
-        near.iter().for_each(|obstacle| note(offset(obstacle, point)));
+        let near = || near.iter().filter(|obstacle| obstacle.may_reach(point, range));
+        near().for_each(|obstacle| note(offset(obstacle, point)));
         let is_inside = |to: Vector| to.cmpge(low).all() && to.cmple(high).all();
         let is_free =
-            |to: Vector| is_inside(to) && !near.iter().any(|obstacle| crosses(&obstacle.tight, point, to));
+            |to: Vector| is_inside(to) && !near().any(|obstacle| crosses(&obstacle.tight, point, to));
         let is_bay = |side: Vector| is_free(point + side * needed) && !is_free(point + side * BAY_DEPTH_M);
         let is_narrow = gaps[0] + gaps[1] < needed && !is_bay(along.perp()) && !is_bay(-along.perp());
         (is_narrow, nearest.min(2.0 * needed) - needed)

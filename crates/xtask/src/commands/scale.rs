@@ -1,7 +1,7 @@
 //! A large team at the usual density: whether it runs, how many it rescues, the time of a step, and the
 //! memory that it needs.
 //!
-//! `scale [ROBOTS] [SECONDS] [RESOLVER]`; the resolver is that of `conflicts.resolver`.
+//! `scale [ROBOTS] [SECONDS] [PATH=VALUE...]` sets fields of the scenario, such as `fidelity=Coarse`.
 
 use std::process::ExitCode;
 use std::time::Instant;
@@ -18,9 +18,9 @@ use super::number;
 pub fn run(arguments: &[String]) -> ExitCode {
     let (robots, seconds) = (number(arguments, 0, 10_000) as u32, number(arguments, 1, 60) as f64);
     let mut scenario = density::mission(robots, seconds, None);
-    if let Some(resolver) = arguments.get(2) {
+    for (path, value) in arguments.iter().filter_map(|argument| argument.split_once('=')) {
         let mut file = (*scenario).clone();
-        file.set("conflicts.resolver", resolver).expect("a resolver");
+        file.set(path, value).expect("a field of the scenario");
         scenario = Scenario::try_from(file).expect("a scenario that can be used");
     }
     let mut eng = policies::standard().open("ENG").expect("known");
@@ -45,7 +45,12 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let us = start.elapsed().as_secs_f64() * 1e6 / steps as f64;
     let record = trial.finish();
     assert!(!matches!(record.status, Status::Failed(_)), "{:?}", record.status);
-    println!("{} s simulated, {us:.0} us a step, {} rescued", record.time_s, record.rescued());
+    println!(
+        "{} s simulated, {us:.0} us a step, {} rescued, hash {}",
+        record.time_s,
+        record.rescued(),
+        record.state_hash
+    );
     if let Some(peak) = peak_memory() {
         println!("peak memory: {peak}");
     }

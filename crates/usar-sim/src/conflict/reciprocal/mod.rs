@@ -170,7 +170,8 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         let Scratch { neighbours, unhindered, turns, directions, heads, near, sight, in_parallel, .. } =
             &mut **scratch;
         let range = range(movers, MARGIN_M, LONGEST_HORIZON_S);
-        unhindered.find(movers, neighbours, range);
+        let in_parallel = *in_parallel && movers.len() >= MANY_ROBOTS;
+        unhindered.find(movers, neighbours, range, in_parallel);
         directions.clear();
         directions.extend(movers.iter().map(|mover| mover.preferred.normalize_or_zero()));
         heads.clear();
@@ -178,7 +179,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         state.retreats.iter().for_each(|(i, retreat)| heads[i] = Some(retreat.head));
         near.resize_with(movers.len(), Near::default);
         let steering = Steering { rules, movers, neighbours, unhindered, turns, directions, heads, range };
-        if *in_parallel && movers.len() >= MANY_ROBOTS {
+        if in_parallel {
             steering.steer_in_parallel(directives, near);
         } else {
             steering.steer(directives, near, sight);

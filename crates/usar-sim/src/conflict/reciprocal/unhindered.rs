@@ -5,7 +5,10 @@
 //! its velocity, are on the free side of each other's half-plane. So most robots of a step need no
 //! half-planes: the test is cheap and errs on the safe side only.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use parry2d::math::Vector;
+use rayon::prelude::*;
 
 use super::encounter::LONGEST_HORIZON_S;
 use super::velocity::{LEAST_SHARE, MARGIN_M};
@@ -60,19 +63,19 @@ impl Course {
 #[derive(Default)]
 pub(in crate::conflict) struct Unhindered {
     courses: Vec<Course>,
-    is_free: Vec<bool>,
+    is_free: Vec<AtomicBool>,
 }
 
 impl Unhindered {
-    /// Looks at all robots anew. The neighbours must be in order; robots farther apart than `range` metres do
-    /// not matter.
-    pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, range: f32) {
+    /// Looks at all robots anew, on all threads if `in_parallel`. The neighbours must be in order; robots
+    /// farther apart than `range` metres do not matter.
+    pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, range: f32, in_parallel: bool) {
         self.courses.clear();
         self.courses.extend(neighbours.by_x().iter().map(|(i, _)| Course::of(i, &movers[i])));
         self.is_free.clear();
-        self.is_free.resize(movers.len(), true);
+        self.is_free.resize_with(movers.len(), || AtomicBool::new(true));
         let farthest = self.courses.iter().map(|course| course.reach).fold(0.0, f32::max);
-        for (at, a) in self.courses.iter().enumerate() {
+        let meet_those_after = |(at, a): (usize, &Course)| {
             let widest = (a.reach + farthest).min(range);
             for b in &self.courses[at + 1..] {
                 let apart = b.at - a.at;
@@ -87,14 +90,21 @@ impl Unhindered {
                 for course in [a, b] {
                     let least = touch + course.swerve;
                     let is_clear = nearest > least * least; // false where a number is not finite
-                    self.is_free[course.robot] &= is_clear;
+                    if !is_clear {
+                        self.is_free[course.robot].store(false, Ordering::Relaxed);
+                    }
                 }
             }
+        };
+        if in_parallel {
+            self.courses.par_iter().enumerate().for_each(meet_those_after);
+        } else {
+            self.courses.iter().enumerate().for_each(meet_those_after);
         }
     }
 
     /// Whether no other robot hinders a robot.
     pub(super) fn is_free(&self, i: usize) -> bool {
-        self.is_free[i]
+        self.is_free[i].load(Ordering::Relaxed)
     }
 }
