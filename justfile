@@ -103,7 +103,7 @@ bench-peers:
 instructions *arguments:
     bash .ci/instructions {{arguments}}
 
-# 10,000 robots for a minute: time, memory, rescuees; other numbers and a resolver as arguments
+# 10,000 robots for a minute: time, memory, hash; other numbers and fields of the scenario (fidelity=Coarse) as arguments
 scale *arguments:
     cargo run --release --bin xtask -- scale {{arguments}}
 
