@@ -15,32 +15,32 @@ impl Experiment {
     /// judge, or need more raters of a robot than a group has.
     pub fn doubts(&self) -> BTreeSet<String> {
         let of_case = |scenario: &Scenario| -> Vec<String> {
-            self.policies.iter().filter_map(|policy| doubt(policy, scenario)).collect()
+            self.policies.iter().filter_map(|policy| policy.doubt(scenario)).collect()
         };
         self.cases.iter().flat_map(|case| of_case(&case.scenario)).collect()
     }
 }
 
-/// A sentence about a policy whose estimator has nothing to judge, or needs more raters than the smallest group
-/// has.
-fn doubt(policy: &PolicySpec, scenario: &Scenario) -> Option<String> {
-    if Written::of(policy.written()).guide.is_some() && !scenario.goes_by_reports() {
-        let name = &scenario.name;
-        let label = &policy.label;
-        return Some(format!(
-            "{label}: {name} has no reports, medium or deceit: the estimator judges nothing"
-        ));
+impl PolicySpec {
+    /// A sentence about a policy whose estimator has nothing to judge in a scenario, or needs more raters than the
+    /// smallest group has.
+    pub fn doubt(&self, scenario: &Scenario) -> Option<String> {
+        let (label, name) = (&self.label, &scenario.name);
+        if Written::of(self.written()).guide.is_some() && !scenario.goes_by_reports() {
+            return Some(format!(
+                "{label}: {name} has no reports, medium or deceit: the estimator judges nothing"
+            ));
+        }
+        let least = self.made().it.least_raters()?;
+        let size = smallest_group(scenario)?;
+        let raters = size - 1;
+        (raters < least as usize).then(|| {
+            format!(
+                "{label}: the estimator needs {least} raters of each robot, and a group of {name} may have {size} \
+                 members: {raters} raters"
+            )
+        })
     }
-    let least = policy.made().it.least_raters()?;
-    let size = smallest_group(scenario)?;
-    let raters = size - 1;
-    (raters < least as usize).then(|| {
-        format!(
-            "{}: the estimator needs {least} raters of each robot, and a group of {} may have {size} members: \
-             {raters} raters",
-            policy.label, scenario.name
-        )
-    })
 }
 
 /// Members of the smallest group, with all robots fit and sizes as equal as possible where no quota asks for
@@ -71,9 +71,9 @@ mod tests {
         let (paper, text) = Scenario::load(path).unwrap();
         let text = text.replace("    duration_s: 600.0,", "    duration_s: 600.0,\n    medium: (),");
         let scenario = Scenario::parse(&text, path).unwrap();
-        let silent = doubt(&PolicySpec::parse("RNE <- Kalman", &policies::standard()).unwrap(), &paper);
+        let silent = PolicySpec::parse("RNE <- Kalman", &policies::standard()).unwrap().doubt(&paper);
         assert!(silent.unwrap().ends_with("has no reports, medium or deceit: the estimator judges nothing"));
-        let doubt = |text| doubt(&PolicySpec::parse(text, &policies::standard()).unwrap(), &scenario);
+        let doubt = |text| PolicySpec::parse(text, &policies::standard()).unwrap().doubt(&scenario);
         assert_eq!(doubt("RNE <- Wmsr(f: 2)"), None, "6 members are 5 raters");
         assert_eq!(
             doubt("RNE <- Both(level: Wmsr(f: 3))").unwrap(),

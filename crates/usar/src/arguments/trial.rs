@@ -107,7 +107,11 @@ impl TrialArguments {
     ) -> Result<Trial, Failure> {
         let source = self.source(file, registry)?;
         let policy = self.policy.as_deref().or(otherwise).unwrap_or(&source.first_policy);
-        self.trial(file, &source, policy, registry)
+        let trial = self.trial(file, &source, policy, registry)?;
+        if let Some(doubt) = trial.spec.doubt(&trial.scenario) {
+            tell(format_args!("note: {}: {doubt}", file.display()));
+        }
+        Ok(trial)
     }
 
     /// The same, where another decision is to be tried. A candidate of a calibration is refused: before it is

@@ -202,3 +202,16 @@ fn policies_are_judged_by_the_outcomes_of_all_assignments() {
     let expected = means.sum::<f64>() / of_trials.len() as f64;
     assert!((mean("DIS <- Beta", 0) - expected).abs() < 1e-9, "as `usar study regret` has it: {expected}");
 }
+
+#[test]
+fn an_estimator_without_reports_is_told_of_in_a_single_trial() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("two.ron"), TWO).unwrap();
+    let told = |policy| {
+        let output =
+            usar(folder.path(), &["run", "two.ron", "--policy", policy, "--set", "duration_s=1.0"][..]);
+        String::from_utf8(output.stderr).unwrap()
+    };
+    assert!(told("DIS <- Beta").contains("note: two.ron: DIS <- Beta: two has no reports"), "it is told");
+    assert_eq!(told("DIS"), "");
+}
