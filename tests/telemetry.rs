@@ -364,20 +364,49 @@ fn until_its_lie_begins_a_liar_is_judged_as_honest() {
     let metrics = Catalogue::of(&scenario);
     let value = |name: &str| metrics[metrics.named(name).unwrap()].value(&record).unwrap();
     let start_s = |round: u32| record.rounds.iter().find(|it| it.round == round).unwrap().start_s;
-    let (mut before, mut after, mut squares, mut detected) = (0.0, 0.0, Vec::new(), None);
+    let (mut before, mut after, mut detected) = (0.0, 0.0, None);
+    let (mut squares, mut logs, mut bins) = (Vec::new(), Vec::new(), [0.0; 10]);
     for made in &record.decisions {
         let is_lying = start_s(made.question.round) >= 300.0;
         *(if is_lying { &mut after } else { &mut before }) += 1.0;
         for (member, it) in made.question.members.iter().zip(made.decision.believed.as_ref().unwrap()) {
             let is_honest = !(is_lying && member.id == 3);
-            squares.push((it.trust - f64::from(u8::from(is_honest))).powi(2));
+            let was = f64::from(u8::from(is_honest));
+            squares.push((it.trust - was).powi(2));
+            logs.push(-f64::max(if is_honest { it.trust } else { 1.0 - it.trust }, 1e-12).ln());
+            bins[((it.trust * 10.0) as usize).min(9)] += it.trust - was;
             if !is_honest && it.trust < 0.5 && detected.is_none() {
                 detected = Some(after - 1.0);
             }
         }
     }
     assert!(before >= 2.0 && after >= 2.0, "{before} rounds before it lies, {after} after");
-    let brier = squares.iter().sum::<f64>() / squares.len() as f64;
-    assert!((value("trust_brier") - brier).abs() < 1e-12, "{} {brier}", value("trust_brier"));
-    assert!((value("rounds_to_detect") - detected.unwrap_or(after)).abs() < 1e-12);
+    let is = |name: &str, expected: f64| {
+        assert!((value(name) - expected).abs() < 1e-12, "{name}: {} {expected}", value(name));
+    };
+    let count = squares.len() as f64;
+    is("trust_brier", squares.iter().sum::<f64>() / count);
+    is("trust_log", logs.iter().sum::<f64>() / count);
+    is("trust_ece", bins.iter().map(|apart: &f64| apart.abs()).sum::<f64>() / count);
+    is("rounds_to_detect", detected.unwrap_or(after));
+    is("reports_heard", record.heard.as_ref().unwrap().evidence.reports.len() as f64);
+    is("liars", 1.0);
+    is("level_crps", value("level_mae")); // levels as they were said, without a spread
+}
+
+/// `Exclude` leaves robots at home that have little trust; those that never lie are counted.
+#[test]
+fn honest_robots_that_are_left_at_home_are_counted() {
+    let text = std::fs::read_to_string(crate::support::root().join("scenarios/trust/tunnel.ron")).unwrap();
+    let lies = "(\n    deceit: [(who: Robots([3]), lie: Exaggerate(by: 1), on: [Hp])],";
+    let text = text.replacen('(', lies, 1).replace("duration_s: 1800.0", "duration_s: 600.0");
+    let text = text.replace("mission: (", "mission: (may_idle: true, ");
+    let scenario = Scenario::parse(&text, "tunnel.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let record = run(&scenario, "HP_DIS <- Beta | Exclude(below: 0.9)", 1);
+    let idle = record.decisions.iter().flat_map(|made| &made.decision.assignment.idle);
+    let honest = idle.filter(|robot| **robot != 3).count();
+    assert!(honest > 0, "the first round knows nobody: trust 0.5");
+    let metrics = Catalogue::of(&scenario);
+    let value = metrics[metrics.named("false_exclusions").unwrap()].value(&record).unwrap();
+    assert!((value - honest as f64).abs() < 1e-12, "{value} {honest}");
 }

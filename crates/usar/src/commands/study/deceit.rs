@@ -27,7 +27,7 @@ judged, and its margin is the largest difference that does not matter. Policies 
 `HP_DIS <- Kalman | Exclude`.
 
 A policy breaks down between two numbers of liars: up to the first it is shown to be better than the draw, \
-from the second on it is shown not to be. Both hold together at 95 %. Where a policy is not shown to be \
+with the second it is shown not to be. Both hold together at 95 %. Where a policy is not shown to be \
 better among honest robots, there is nothing to break down. How well estimators judge is told by policies \
 `DIS <- ESTIMATOR`: DIS hears nothing, so that all estimators have the same evidence.
 
