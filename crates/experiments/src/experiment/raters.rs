@@ -22,8 +22,8 @@ impl Experiment {
 }
 
 impl PolicySpec {
-    /// A sentence about a policy whose estimator has nothing to judge in a scenario, or needs more raters than the
-    /// smallest group has.
+    /// A sentence about a policy whose estimator has nothing to judge in a scenario, or needs more raters than
+    /// the smallest group has.
     pub fn doubt(&self, scenario: &Scenario) -> Option<String> {
         let (label, name) = (&self.label, &scenario.name);
         if Written::of(self.written()).guide.is_some() && !scenario.goes_by_reports() {
@@ -36,8 +36,8 @@ impl PolicySpec {
         let raters = size - 1;
         (raters < least as usize).then(|| {
             format!(
-                "{label}: the estimator needs {least} raters of each robot, and a group of {name} may have {size} \
-                 members: {raters} raters"
+                "{label}: the estimator needs {least} raters of each robot, and a group of {name} may have \
+                 {size} members: {raters} raters"
             )
         })
     }
