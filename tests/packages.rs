@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use crate::support::root;
 
 /// Dependencies that decide bits: any other version may change every number.
-const EXACT: [&str; 7] = ["cmaes", "geo", "libm", "nalgebra", "parry2d", "polyanya", "rapier2d"];
+const EXACT: [&str; 5] = ["cmaes", "libm", "nalgebra", "parry2d", "rapier2d"];
 
 /// Crates that are no libraries for others.
 const OURS: [&str; 1] = ["xtask"];

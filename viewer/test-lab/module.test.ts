@@ -138,11 +138,6 @@ describe('every trial is the one of the command', () => {
 });
 
 describe('what goes wrong', () => {
-  it('a panic of the library of triangulations is caught, and the trial goes on', () => {
-    const path = 'scenarios/minimal/rubble.ron';
-    expect(run(module, { path, policy: 'RNE' }).line).toBe(printed(path, 'RNE', '1'));
-  });
-
   it(
     'damaged texts are refused or run, and never trap',
     () => {

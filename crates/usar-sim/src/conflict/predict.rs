@@ -74,8 +74,12 @@ impl Neighbours {
 /// The distance within which robots could meet within the horizon or be in each other's way, in metres.
 pub(super) fn range(movers: &[Mover], margin: f32, horizon: f32) -> f32 {
     let fastest = movers.iter().map(|mover| mover.preferred.length()).fold(0.0, f32::max);
-    let largest = movers.iter().map(|mover| mover.radius).fold(0.0, f32::max);
-    (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest + margin
+    (2.0 * fastest * horizon).max(PASSING_RANGE_M) + 2.0 * largest(movers) + margin
+}
+
+/// The largest radius, in metres.
+pub(super) fn largest(movers: &[Mover]) -> f32 {
+    movers.iter().map(|mover| mover.radius).fold(0.0, f32::max)
 }
 
 /// Whether two robots that both want to move would come closer than their safety distance within the horizon

@@ -184,26 +184,36 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
                 (attempt.is_some() || effect != Effect::None || cut_ahead(), effect)
             }
         };
-        if !replan && traveller.is_planned {
-            return;
+        if replan || !traveller.is_planned {
+            self.plan_anew(traveller, attempt, effect);
         }
+        self.examine_ahead(traveller);
+    }
+
+    /// Plans a route.
+    fn plan_anew(&self, traveller: &mut Traveller, attempt: Option<Attempt>, effect: Effect) {
+        let Self { outlook, robot, .. } = self;
         let is_detour = attempt == Some(Attempt::Detour);
         let in_the_way = if is_detour { self.standing_near() } else { Vec::new() };
-        let cut = traveller.route.as_ref().filter(|_| effect == Effect::Cut);
-        let so_far = cut.map_or(&[][..], Route::ahead);
-        let query = Query { so_far, in_the_way: &in_the_way, ..self.query() };
+        let query = Query { in_the_way: &in_the_way, ..self.query() };
         let route = find_route(&outlook.model.planner, &query);
         if is_detour && !traveller.is_as_near(route.as_ref(), self.goal) {
             return;
         }
         traveller.set_route(route, robot.position, effect != Effect::None || !traveller.is_planned);
+    }
+
+    /// Looks for narrow passages on the next part of the route, where the right of way depends on them.
+    fn examine_ahead(&self, traveller: &mut Traveller) {
+        let Self { outlook, robot, belief, .. } = self;
+        let Some(left) = traveller.length(robot.position) else { return };
         if let Some(route) = &traveller.route
             && outlook.model.right_of_way.rule == RuleKind::Reciprocal
             && !robot.is_aerial()
         {
             let (known, arena) = (belief.obstacles(robot.radius()), outlook.model.arena);
             let walls = Walls { known, arena, radius: robot.radius() };
-            traveller.passages = walls.passages(robot.position, route);
+            walls.examine(robot.position, left, route, &mut traveller.passages);
         }
     }
 
@@ -216,7 +226,6 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
             speed: (self.outlook.speed_of)(robot) as f32,
             radius: robot.radius(),
             obstacles: self.belief.obstacles(robot.radius()),
-            so_far: &[],
             in_the_way: &[],
             zones: self.belief.zones_on(),
         }

@@ -4,7 +4,7 @@ use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::belief::Seen;
-use crate::planning::{Passage, Route};
+use crate::planning::{Passage, Passages, Route};
 
 /// An approach by less than this is no progress, in metres.
 pub(super) const PROGRESS_M: f32 = 0.05;
@@ -35,8 +35,8 @@ pub(super) enum Attempt {
 pub struct Traveller {
     pub(super) goal: Option<Goal>,
     pub(super) route: Option<Route>,
-    /// Narrow passages of the route, as it was planned.
-    pub(super) passages: Vec<Passage>,
+    /// Narrow passages of the route.
+    pub(super) passages: Passages,
     pub(super) is_planned: bool,
     pub(super) seen: Seen,
     /// Least length that the route ahead has had, in metres.
@@ -69,7 +69,7 @@ impl Traveller {
         Self {
             goal,
             route: None,
-            passages: Vec::new(),
+            passages: Passages::default(),
             is_planned: false,
             seen: Seen::default(),
             best_length: f32::INFINITY,
@@ -120,7 +120,7 @@ impl Traveller {
 
     /// The narrow passages of the route.
     pub(crate) fn passages(&self) -> &[Passage] {
-        &self.passages
+        &self.passages.found
     }
 
     /// Whether a robot at this position is at its goal, or at the end of its route.
@@ -175,7 +175,7 @@ impl Traveller {
             self.stalled_steps = 0;
         }
         self.lost_at = if route.is_some() { None } else { Some(position) };
-        self.route = route;
+        (self.route, self.passages) = (route, Passages::default());
         (self.measured, self.settled_at) = (None, None);
         self.is_planned = true;
     }

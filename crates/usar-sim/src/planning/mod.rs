@@ -5,25 +5,25 @@
 //! few obstacles: at first none, then the obstacles that the best route so far runs into, until it runs into
 //! none. A shortest path among some of the obstacles that keeps clear of all obstacles is the shortest among
 //! all, so the result is optimal. The cost of a search depends on the surroundings of the route, not on the
-//! size of the map. The free plane among the few obstacles is triangulated and searched by Polyanya (Cui,
-//! Harabor & Grastien, IJCAI 2017; the `polyanya` crate).
+//! size of the map. Among the few obstacles, the search goes from tangent to tangent (`tangents`).
 //!
 //! Radiation has a price: a route costs its length plus `exposure_price_m` metres for each second inside each
 //! zone. A route either crosses a zone or leads round it. The search starts from the route that ignores all
 //! zones. It closes each crossed zone for a try, and keeps the zone closed if the new route costs less.
 
-mod faces;
 mod map;
 mod obstacles;
 mod passage;
 mod route;
 mod search;
+mod tangents;
 
 pub use map::{Inflation, ObstacleMap};
 pub use obstacles::{
     KnownObstacle, ObstacleKey, contains as polygon_contains, crosses as polygon_crossed,
     nearest_border_point, outward_normal,
 };
+pub(crate) use passage::Passages;
 pub use passage::{Passage, Walls};
 pub use route::Route;
 
@@ -33,6 +33,7 @@ use crate::geometry::{Outline, RadiationZone, vector};
 use crate::scenario::{RoleKind, Scenario};
 use obstacles::ZONE_MARGIN_M;
 use search::Search;
+use tangents::Wanted;
 
 /// The planner of one trial: its settings.
 #[derive(Debug)]
@@ -61,8 +62,6 @@ pub struct Query<'a> {
     pub speed: f32,
     /// The obstacles that it knows, inflated for its radius; robots that fly pass over them.
     pub obstacles: &'a ObstacleMap,
-    /// Waypoints of the present route if it was cut, to speed up the search; otherwise none.
-    pub so_far: &'a [Vector],
     /// Temporary obstacles, such as standing robots.
     pub in_the_way: &'a [KnownObstacle],
     /// The radiation zones that it knows, with their numbers.
@@ -137,11 +136,11 @@ impl Planner {
             |(outline, number)| KnownObstacle::new(ObstacleKey::Debris(number), outline, offset, 0.0);
         let known: ObstacleMap = outlines.iter().zip(0..).map(obstacle).collect();
         let (arena, known, always) = (self.arena, Some(&known), Vec::new());
-        let search = Search { arena, offset, known, always, keeps_meshes: false };
+        let search = Search { arena, offset, known, always };
         let mut reached = search.free_point(from);
         places.iter().find(|(_, place)| {
             let place = search.free_point(*place);
-            let is_reached = search.way([reached, place], &[]).is_some();
+            let is_reached = search.way([reached, place], Wanted::Any).is_some();
             reached = if is_reached { place } else { reached };
             !is_reached
         })
@@ -164,10 +163,9 @@ impl Planner {
             offset: if query.aerial { self.aerial_offset } else { self.ground_offset(query.radius) },
             known: (!query.aerial).then_some(query.obstacles),
             always: zones.iter().chain(in_the_way).map(Vec::as_slice).collect(),
-            keeps_meshes: query.in_the_way.is_empty(),
         };
         let from = search.free_point(query.from);
-        let way = search.way([from, search.free_point(query.to)], query.so_far)?;
+        let way = search.way([from, search.free_point(query.to)], Wanted::Shortest)?;
         let start = (from != query.from).then_some(from);
         Some(Route::new(start.into_iter().chain(way).collect()))
     }

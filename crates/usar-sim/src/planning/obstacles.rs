@@ -15,7 +15,7 @@ pub(super) const ZONE_MARGIN_M: f32 = 0.1;
 const PUSH_OUT_M: f32 = 0.02;
 
 /// A line of which no more than this is in a polygon only touches it, in metres.
-const GRAZE_M: f32 = 1.0e-3;
+pub(super) const GRAZE_M: f32 = 1.0e-3;
 
 /// The identity of an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -95,34 +95,15 @@ pub fn contains(polygon: &[Vector], point: Vector) -> bool {
     edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= 0.0)
 }
 
-/// Whether a point is in a convex polygon (anticlockwise), or at its border.
-pub(super) fn touches(polygon: &[Vector], point: Vector) -> bool {
-    const BORDER_M: f32 = 0.01;
-    edges(polygon).all(|(a, b)| (b - a).perp_dot(point - a) >= -BORDER_M * (b - a).length())
-}
-
 /// Whether the line from `a` to `b` crosses the inside of a convex polygon (anticlockwise). Clips the line by
 /// each edge (Cyrus and Beck) and tests whether more than a grazing touch is left.
 pub fn crosses(polygon: &[Vector], a: Vector, b: Vector) -> bool {
-    is_clipped(polygon, 0.0, a, b)
-}
-
-/// Whether the line from `a` to `b` is deeper in a convex polygon (anticlockwise) than the rounding of a
-/// search among meshes explains, which leaves out bends of a few millimetres.
-pub(super) fn is_entered(polygon: &[Vector], a: Vector, b: Vector) -> bool {
-    const ROUNDING_M: f32 = 5.0e-3;
-    is_clipped(polygon, ROUNDING_M, a, b)
-}
-
-/// Whether more than a grazing touch is left of a line that is clipped by a polygon without the strip of
-/// `inset` metres along its border.
-fn is_clipped(polygon: &[Vector], inset: f32, a: Vector, b: Vector) -> bool {
     let way = b - a;
     let length = way.length();
     let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
     for (p, q) in edges(polygon) {
         let edge = q - p;
-        let depth = edge.perp_dot(a - p) - inset * edge.length(); // positive inside
+        let depth = edge.perp_dot(a - p); // positive inside
         let change = edge.perp_dot(way);
         if change.abs() < 1e-12 {
             if depth <= 0.0 {

@@ -12,6 +12,13 @@ const SAMPLE_M: f32 = 0.15;
 /// The obstacles near a route are looked up for so much of it at a time, in metres.
 const STRETCH_M: f32 = 8.0;
 
+/// A route is examined when less than this of it is examined ahead, in metres, and then for twice as far.
+const AHEAD_M: f32 = 10.0;
+
+/// A route is not left half examined within this distance of a passage, in metres: what follows is part of the
+/// passage, or a bay beside it.
+const BEYOND_M: f32 = 3.0;
+
 /// Room that two robots side by side need beyond their diameters, in metres.
 const SPARE_M: f32 = 0.05;
 
@@ -34,6 +41,29 @@ pub struct Passage {
     pub leaves_at: f32,
 }
 
+/// The narrow passages of a route, as far as it was examined.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(crate) struct Passages {
+    /// In the order in which the route leads through them.
+    pub(crate) found: Vec<Passage>,
+    /// Route length left at the place up to which it was examined, in metres.
+    examined_to: f32,
+}
+
+impl Default for Passages {
+    /// Nothing was examined.
+    fn default() -> Self {
+        Self { found: Vec::new(), examined_to: f32::INFINITY }
+    }
+}
+
+impl Passages {
+    /// Whether the last passage ends a short way before the place at which so much of the route is left, in metres.
+    fn are_near(&self, left: f32) -> bool {
+        self.found.last().is_some_and(|last| last.leaves_at - left < BEYOND_M)
+    }
+}
+
 /// The surroundings that make a route narrow.
 pub struct Walls<'a> {
     /// The obstacles that are known.
@@ -45,17 +75,25 @@ pub struct Walls<'a> {
 }
 
 impl Walls<'_> {
-    /// The narrow passages of a route from a position, in order.
-    pub(crate) fn passages(&self, from: Vector, route: &Route) -> Vec<Passage> {
-        let mut passages: Vec<Passage> = Vec::new();
+    /// Examines more of a route, of which so much is left from a position, in metres, once the robot comes near to
+    /// what was not examined.
+    pub(crate) fn examine(&self, from: Vector, left: f32, route: &Route, passages: &mut Passages) {
+        if passages.examined_to <= (left - AHEAD_M).max(0.0) {
+            return;
+        }
         let mut near: Vec<&KnownObstacle> = Vec::new();
-        let mut left = route.length(from);
+        let mut rest = left;
         for (a, b) in route.legs(from) {
             let length = (b - a).length();
             let along = (b - a).normalize_or_zero();
-            let (mut at, mut looked_to) = (0.0, 0.0);
+            let mut at = (rest - passages.examined_to).max(0.0);
+            let mut looked_to = at;
             while at < length {
-                let point = a + along * at;
+                let (point, here) = (a + along * at, rest - at);
+                if here < left - 2.0 * AHEAD_M && !passages.are_near(here) {
+                    passages.examined_to = here;
+                    return;
+                }
                 if at >= looked_to {
                     looked_to = at + STRETCH_M;
                     near.clear();
@@ -63,13 +101,13 @@ impl Walls<'_> {
                 }
                 let (is_narrow, skip) = self.look(point, along, &near);
                 if is_narrow {
-                    self.add(&mut passages, point, left - at);
+                    self.add(&mut passages.found, point, here);
                 }
                 at += skip.max(SAMPLE_M);
             }
-            left -= length;
+            rest -= length;
         }
-        passages
+        passages.examined_to = 0.0;
     }
 
     /// Adds a narrow point to the last passage. After a wide place that is longer than the robot's radius,

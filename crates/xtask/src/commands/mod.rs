@@ -17,17 +17,6 @@ pub mod worlds;
 
 use std::path::PathBuf;
 
-/// From now on, a panic of the library of triangulations prints nothing: the planner catches it and tries
-/// again with other outlines.
-fn silence_triangulations() {
-    let others = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |panic| {
-        if !panic.location().is_some_and(|place| place.file().contains("/spade-")) {
-            others(panic);
-        }
-    }));
-}
-
 /// The whole number at this place of the arguments.
 fn number(arguments: &[String], at: usize, usual: u64) -> u64 {
     arguments.get(at).map_or(usual, |text| text.parse().expect("a whole number"))

@@ -19,7 +19,7 @@ mod walls;
 
 use serde::{Deserialize, Serialize};
 
-use super::predict::range;
+use super::predict::{largest, range};
 use super::retreat::{Crowd, Retreats};
 use super::{MANY_ROBOTS, Mover, Scratch, Step};
 use crate::event::Event;
@@ -31,6 +31,10 @@ use steering::Steering;
 pub(super) use steering::{Near, Sight};
 pub(super) use unhindered::Unhindered;
 use velocity::MARGIN_M;
+
+/// Robots with a wider gap between them do not heed one another, in metres. It seldom matters: robots heed the
+/// nearest few.
+const HEEDED_WITHIN_M: f32 = 3.0;
 
 /// Robots wait at this distance from a passage, beyond their radius, in metres.
 const WAIT_AT_M: f32 = 0.6;
@@ -169,7 +173,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         let Self { rules, state, scratch, movers, directives, .. } = self;
         let Scratch { neighbours, unhindered, turns, directions, heads, near, sight, in_parallel, .. } =
             &mut **scratch;
-        let range = range(movers, MARGIN_M, LONGEST_HORIZON_S);
+        let range = range(movers, MARGIN_M, LONGEST_HORIZON_S).min(HEEDED_WITHIN_M + 2.0 * largest(movers));
         let in_parallel = *in_parallel && movers.len() >= MANY_ROBOTS;
         unhindered.find(movers, neighbours, range, in_parallel);
         directions.clear();
