@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
+use rayon::prelude::*;
 use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 
@@ -213,7 +214,12 @@ impl State {
     pub(super) fn resolve(&mut self, model: &Model, scratch: &mut Scratch) {
         let (mission, beliefs, navigator) = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(&mut scratch.movers);
-        movers.extend(beliefs.team.iter().map(|robot| mover(robot, model, mission, beliefs, navigator)));
+        let of = |robot: &Robot| mover(robot, model, mission, beliefs, navigator);
+        if scratch.in_parallel && beliefs.team.len() >= MANY_ROBOTS {
+            movers.par_extend(beliefs.team.par_iter().map(of));
+        } else {
+            movers.extend(beliefs.team.iter().map(of));
+        }
         if !self.faults.is_empty() {
             self.faults.slow(&mut movers);
         }
