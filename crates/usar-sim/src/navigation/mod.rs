@@ -206,11 +206,11 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
     /// Looks for narrow passages on the next part of the route, where the right of way depends on them.
     fn examine_ahead(&self, traveller: &mut Traveller) {
         let Self { outlook, robot, belief, .. } = self;
-        let Some(left) = traveller.length(robot.position) else { return };
-        if let Some(route) = &traveller.route
-            && outlook.model.right_of_way.rule == RuleKind::Reciprocal
-            && !robot.is_aerial()
-        {
+        if outlook.model.right_of_way.rule != RuleKind::Reciprocal || robot.is_aerial() {
+            return;
+        }
+        let left = traveller.length(robot.position);
+        if let (Some(route), Some(left)) = (&traveller.route, left) {
             let (known, arena) = (belief.obstacles(robot.radius()), outlook.model.arena);
             let walls = Walls { known, arena, radius: robot.radius() };
             walls.examine(robot.position, left, route, &mut traveller.passages);
