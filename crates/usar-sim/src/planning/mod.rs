@@ -140,7 +140,9 @@ impl Planner {
         let mut reached = search.free_point(from);
         places.iter().find(|(_, place)| {
             let place = search.free_point(*place);
-            let is_reached = search.way([reached, place], Wanted::Any).is_some();
+            let is_reached = [Wanted::Any, Wanted::Shortest]
+                .into_iter()
+                .any(|wanted| search.way([reached, place], wanted).is_some());
             reached = if is_reached { place } else { reached };
             !is_reached
         })

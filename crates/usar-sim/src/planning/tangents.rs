@@ -121,7 +121,8 @@ impl<'a> Plane<'a> {
             first += corners.len();
             Outline { corners, middle, reach, first: first - corners.len() }
         };
-        Self { border, outlines: outlines.into_iter().map(outline).collect() }
+        let outlines = outlines.into_iter().filter(|corners| !corners.is_empty());
+        Self { border, outlines: outlines.map(outline).collect() }
     }
 
     /// The way from one point to another, without its start; `None` if there is none.

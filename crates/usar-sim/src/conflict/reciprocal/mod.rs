@@ -32,8 +32,8 @@ pub(super) use steering::{Near, Sight};
 pub(super) use unhindered::Unhindered;
 use velocity::MARGIN_M;
 
-/// Robots with a wider gap between them do not heed one another, in metres. It seldom matters: robots heed the
-/// nearest few.
+/// Robots with a wider gap between them do not heed one another, in metres; the gap in which two of the fastest
+/// stop, where that is more. It seldom matters: robots heed the nearest few.
 const HEEDED_WITHIN_M: f32 = 3.0;
 
 /// Robots wait at this distance from a passage, beyond their radius, in metres.
@@ -173,7 +173,9 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         let Self { rules, state, scratch, movers, directives, .. } = self;
         let Scratch { neighbours, unhindered, turns, directions, heads, near, sight, in_parallel, .. } =
             &mut **scratch;
-        let range = range(movers, MARGIN_M, LONGEST_HORIZON_S).min(HEEDED_WITHIN_M + 2.0 * largest(movers));
+        let stopping = |mover: &Mover| mover.speed * mover.speed / mover.braking;
+        let heeded_within = movers.iter().map(stopping).fold(HEEDED_WITHIN_M, f32::max);
+        let range = range(movers, MARGIN_M, LONGEST_HORIZON_S).min(heeded_within + 2.0 * largest(movers));
         let in_parallel = *in_parallel && movers.len() >= MANY_ROBOTS;
         unhindered.find(movers, neighbours, range, in_parallel);
         directions.clear();
