@@ -15,8 +15,8 @@ const STRETCH_M: f32 = 8.0;
 /// A route is examined when less than this of it is examined ahead, in metres, and then for twice as far.
 const AHEAD_M: f32 = 10.0;
 
-/// A route is not left half examined within this distance of a passage, in metres: what follows is part of the
-/// passage, or a bay beside it.
+/// A route is not left half examined within this distance of a passage, in metres: what follows may be part of
+/// the passage, or a bay beside it.
 const BEYOND_M: f32 = 3.0;
 
 /// Room that two robots side by side need beyond their diameters, in metres.
@@ -58,7 +58,8 @@ impl Default for Passages {
 }
 
 impl Passages {
-    /// Whether the last passage ends a short way before the place at which so much of the route is left, in metres.
+    /// Whether the last passage ends a short way before the place at which this much of the route is left, in
+    /// metres.
     fn are_near(&self, left: f32) -> bool {
         self.found.last().is_some_and(|last| last.leaves_at - left < BEYOND_M)
     }
@@ -75,8 +76,8 @@ pub struct Walls<'a> {
 }
 
 impl Walls<'_> {
-    /// Examines more of a route, of which so much is left from a position, in metres, once the robot comes near to
-    /// what was not examined.
+    /// Examines more of a route once the robot comes near to what was not examined. `left` is the length of
+    /// the route from the position `from`, in metres.
     pub(crate) fn examine(&self, from: Vector, left: f32, route: &Route, passages: &mut Passages) {
         if passages.examined_to <= (left - AHEAD_M).max(0.0) {
             return;

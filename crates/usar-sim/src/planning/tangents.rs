@@ -2,12 +2,12 @@
 //!
 //! A shortest way bends only at corners of outlines, and goes from one outline to the next along a tangent of
 //! both (Liu & Arimoto, "Path planning using a tangent graph for mobile robots among polygonal and curved
-//! obstacles", IJRR 1992). Few tangents are looked at: those round outlines that a promising leg ran into. A leg
-//! is tested for what it runs into only when it is the most promising one (lazy search, Dellin & Srinivasa, ICAPS
-//! 2016).
+//! obstacles", IJRR 1992). A leg is tested for what it runs into only when it is the most promising one (lazy
+//! search, Dellin & Srinivasa, ICAPS 2016).
 //!
-//! Outlines that a leg does not run into may be left out: a shortest way round more outlines is no shorter. When
-//! the most promising leg runs into one, ways round this one are looked at from every place that was reached.
+//! Few outlines are looked at. An outline that no promising leg runs into may be left out, because a shortest
+//! way round more outlines is no shorter. When the most promising leg runs into an outline, ways round it are
+//! looked at from every place that was reached.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -239,8 +239,8 @@ impl Search<'_, '_> {
 }
 
 impl Turn {
-    /// Whether a taut way may lead to a point at this offset from the bend, or to one within `range` of it, in
-    /// metres.
+    /// Whether a taut way may lead to a point at this offset from the bend, or to one within `range` metres of
+    /// it.
     fn leads_to(&self, offset: Vector, range: f32) -> bool {
         let aside = [self.between[0].perp_dot(offset), offset.perp_dot(self.between[1])];
         let aside = if self.bend.is_left { aside } else { aside.map(|aside| -aside) };

@@ -32,8 +32,8 @@ pub(super) use steering::{Near, Sight};
 pub(super) use unhindered::Unhindered;
 use velocity::MARGIN_M;
 
-/// Robots with a wider gap between them do not heed one another, in metres; the gap in which two of the fastest
-/// stop, where that is more. It seldom matters: robots heed the nearest few.
+/// Robots with a wider gap between them do not heed one another, in metres, unless the fastest need more to
+/// stop. It seldom matters: robots heed the nearest few.
 const HEEDED_WITHIN_M: f32 = 3.0;
 
 /// Robots wait at this distance from a passage, beyond their radius, in metres.
