@@ -10,6 +10,8 @@ ron_tree::limits! {
     DURATION_S: "duration_s" = 1, 86_400;
     /// Length of a step, in seconds.
     DT_S: "dt_s" = 0.001, 0.05;
+    /// Time from one control step to the next, in seconds.
+    CONTROL_PERIOD_S: "control_period_s" = 0.001, 1;
     /// Width and height of the arena, in metres. Positions are numbers of single precision: at 8,000 m they
     /// are 0.5 mm apart, which is what contacts and the routes between them bear.
     ARENA_M: "arena_m[*]" = 2, 8_000;

@@ -88,7 +88,7 @@ impl RobotRecord {
             hp_lost: tally.spent[1],
             distance_m: tally.distance_m,
             waiting_s: seconds(tally.waiting_steps),
-            longest_stall_s: seconds(tally.longest_stall.0),
+            longest_stall_s: seconds(tally.longest_stall.0 * model.control_steps),
             stall: tally.longest_stall.1,
             stranded: robot.condition == Condition::Stranded,
             disabled: robot.condition == Condition::Disabled,

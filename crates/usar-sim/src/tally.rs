@@ -41,15 +41,15 @@ impl Tally {
         self.delay
     }
 
-    /// Adds a travelled distance, in metres.
-    pub(crate) fn note_way(&mut self, metres: f64) {
+    /// Adds a step, and the distance travelled in it, in metres.
+    pub(crate) fn note_step(&mut self, metres: f64) {
         self.distance_m += metres;
+        self.waiting_steps += u64::from(self.delay.cause.is_waiting());
     }
 
-    /// Notes why the robot stops, and the `steps` since it last came nearer to its goal. The cause that took
-    /// most of these steps counts as the cause of the stall.
+    /// Notes in a control step why the robot stops, and the control `steps` since it last came nearer to its
+    /// goal. The cause that took most of these steps counts as the cause of the stall.
     pub(crate) fn note_delay(&mut self, delay: Delay, steps: u64) {
-        self.waiting_steps += u64::from(delay.cause.is_waiting());
         self.delay = delay;
         if steps == 0 {
             if !std::mem::replace(&mut self.stall.is_over, true) {

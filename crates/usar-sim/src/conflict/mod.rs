@@ -24,6 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::EventLog;
 use crate::model::{RightOfWayModel, RuleKind};
+use crate::report::Track;
 
 pub use delay::{Delay, DelayCause, wait_cycles};
 pub use mover::{Directive, Mover};
@@ -124,7 +125,15 @@ impl Resolver {
         &self.directives
     }
 
-    /// The directives of the last step, by robot.
+    /// Adapts the velocities of the last directives to how robots move now, by id: under the default rule,
+    /// those of robots that are close to others.
+    pub(crate) fn adapt(&mut self, tracks: &[Track], scratch: &mut Scratch) {
+        if let Rule::Reciprocal(state) = &self.rule {
+            state.adapt(&mut self.directives, tracks, scratch);
+        }
+    }
+
+    /// The directives of the last control step, by robot.
     pub fn directives(&self) -> &[Directive] {
         &self.directives
     }

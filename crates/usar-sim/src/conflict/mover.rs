@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::PriorityKey;
 use crate::ids::RobotId;
+use crate::model::Brakes;
 use crate::planning::{ObstacleMap, Passage};
+use crate::report::Track;
 
 /// A robot as the resolver sees it.
 #[derive(Debug, Clone, Copy)]
@@ -37,8 +39,8 @@ pub struct Mover<'a> {
     pub radius: f32,
     /// Present top speed, in metres per second.
     pub speed: f32,
-    /// Deceleration that it plans with, in metres per second squared.
-    pub braking: f32,
+    /// How it plans to brake.
+    pub brakes: Brakes,
     /// Its claim to the right of way.
     pub priority: PriorityKey,
     /// The obstacles that it knows; none for aerial robots.
@@ -49,6 +51,11 @@ pub struct Mover<'a> {
 }
 
 impl Mover<'_> {
+    /// Where it is and how it moves.
+    pub(super) fn track(&self) -> Track {
+        Track { position: self.position, velocity: self.velocity }
+    }
+
     pub(super) fn wishes_to_move(&self) -> bool {
         self.preferred != Vector::ZERO
     }
@@ -109,6 +116,18 @@ impl Directive {
     /// The directive that grants a preferred velocity as it is.
     pub(super) fn granted(preferred: Vector) -> Self {
         if preferred == Vector::ZERO { Self::Stand } else { Self::Proceed(preferred) }
+    }
+
+    /// The same with another velocity; a robot that is to stop still stops.
+    pub(super) fn set_velocity(&mut self, to: Vector) {
+        match self {
+            Self::Proceed(velocity)
+            | Self::BackOff(velocity)
+            | Self::GiveWay(velocity)
+            | Self::Retreat { velocity, .. }
+            | Self::Follow { velocity, .. } => *velocity = to,
+            Self::Yield { .. } | Self::Blocked { .. } | Self::Stand => {}
+        }
     }
 
     /// The velocity that the drive is to reach.

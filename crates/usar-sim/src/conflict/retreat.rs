@@ -327,7 +327,7 @@ impl Retreat {
         let to_next = *next - me.position;
         me.retreat_left = Some(self.way(me).windows(2).map(|leg| (leg[1] - leg[0]).length()).sum());
         me.leg_left = to_next.length();
-        let reachable = (2.0 * me.braking * me.leg_left).sqrt().max(0.05);
+        let reachable = me.brakes.speed_before(0.0, me.leg_left).max(0.05);
         me.preferred = to_next.normalize_or_zero() * (speed_share * me.speed).min(reachable);
     }
 }

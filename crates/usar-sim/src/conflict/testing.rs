@@ -6,7 +6,7 @@ use super::reciprocal::Reciprocal;
 use super::{Directive, Mover, PriorityKey, Scratch, Step};
 use crate::event::EventLog;
 use crate::ids::RobotId;
-use crate::model::{ReciprocalModel, RightOfWayModel};
+use crate::model::{Brakes, ReciprocalModel, RightOfWayModel};
 use crate::scenario::Scenario;
 
 /// A ground robot of 0.4 m radius with this preferred velocity, whose route leads 10 m in that direction.
@@ -30,7 +30,7 @@ pub(super) fn mover(id: u32, at: [f32; 2], preferred: [f32; 2]) -> Mover<'static
         trail: &[],
         radius: 0.4,
         speed: 2.0,
-        braking: 3.0,
+        brakes: Brakes { deceleration: 3.0, delay_s: 0.0 },
         priority: PriorityKey { class: 0, level: 50.0, robot: RobotId(id) },
         known: None,
         can_make_room: true,

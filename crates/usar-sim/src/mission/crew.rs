@@ -111,13 +111,11 @@ impl Crew {
         self.groups[task.index()].members.iter().copied().filter(is_in_field)
     }
 
-    /// Whether a robot may claim a rescuee in this step. Robots take turns, so that not all of them search in
-    /// the same step.
+    /// Whether a robot may claim a rescuee in this step.
     pub(super) fn looks_for_work(&self, id: RobotId, scene: &Scene) -> bool {
         let robot = &scene.beliefs.team[id.index()];
         let is_free = matches!(self.agents[id.index()].activity, Activity::Searching | Activity::Standby);
-        let is_due = (scene.step + u64::from(id.0)).is_multiple_of(scene.model.sensing_steps);
-        is_due && is_free && robot.is_able() && robot.free_capacity() > 0
+        is_free && robot.is_able() && robot.free_capacity() > 0
     }
 
     /// Resources of a group in the field that no claim needs; negative if there are more claims than

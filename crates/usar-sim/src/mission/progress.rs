@@ -108,11 +108,11 @@ impl Crew {
     fn is_held_up_for(&self, seconds: f64, robot: &Robot, model: &Model) -> bool {
         let progress = &self.agents[robot.id.index()].progress;
         let steps = progress.held_up_steps;
-        if steps <= model.mission.cut_off_steps || steps <= model.steps_in(seconds) {
+        if steps <= model.mission.cut_off_steps || steps <= model.control_steps_in(seconds) {
             return false;
         }
         let detour_s = f64::from(progress.allowed_way_m()) / self.speed_of(model, robot).max(1e-6);
-        steps > model.steps_in(seconds + detour_s)
+        steps > model.control_steps_in(seconds + detour_s)
     }
 
     /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to

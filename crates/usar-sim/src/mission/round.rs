@@ -103,7 +103,7 @@ mod tests {
     use crate::scenario::MissionRules;
 
     fn compiled(rules: MissionRules) -> MissionModel {
-        MissionModel::compile(&rules, 1.0)
+        MissionModel::compile(&rules, 1.0, 1.0)
     }
 
     fn rules(turn_back: TurnBack) -> MissionModel {

@@ -45,7 +45,7 @@ impl Scene<'_> {
     /// Whether a robot has known no route to its goal for so long that it gives up on the goal.
     pub(super) fn gives_up(&self, robot: RobotId) -> bool {
         let lost_steps = self.navigator.traveller(robot).lost_steps();
-        lost_steps > 0 && lost_steps >= self.model.steps_in(GIVE_UP_S)
+        lost_steps > 0 && lost_steps >= self.model.control_steps_in(GIVE_UP_S)
     }
 
     /// Whether a robot has arrived and is really at its goal. The route may end beside a place that debris

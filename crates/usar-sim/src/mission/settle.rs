@@ -114,7 +114,7 @@ impl Mission {
     /// Goes on with a rest until its end. Time off the rest place does not count.
     fn rest(&mut self, robot: RobotId, done: u64, scene: &Scene) -> Option<Intent> {
         if !is_at_slot(robot, scene) {
-            self.crew.agent(robot).activity = Activity::Resting(done + 1);
+            self.crew.agent(robot).activity = Activity::Resting(done + scene.model.control_steps);
             return None;
         }
         let state = &scene.beliefs.team[robot.index()];

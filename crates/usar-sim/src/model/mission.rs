@@ -36,7 +36,7 @@ pub struct MissionModel {
     pub reach: f32,
     /// Share of its speed that a robot keeps when its group has no guide that can act.
     pub blind_speed: f64,
-    /// After so many steps without coming nearer to its goal a robot gives up on it.
+    /// After so many control steps without coming nearer to its goal a robot gives up on it.
     pub cut_off_steps: u64,
 }
 
@@ -49,8 +49,8 @@ impl Deref for MissionModel {
 }
 
 impl MissionModel {
-    /// Compiles rules for steps of `dt_s` seconds.
-    pub fn compile(rules: &MissionRules, dt_s: f64) -> Self {
+    /// Compiles rules for steps of `dt_s` seconds and control steps `control_s` seconds apart.
+    pub fn compile(rules: &MissionRules, dt_s: f64, control_s: f64) -> Self {
         let steps = |seconds: f64| (seconds / dt_s).round() as u64;
         Self {
             low_energy: LowLevel { threshold: rules.energy_threshold, turn_back: rules.energy_turn_back },
@@ -60,7 +60,7 @@ impl MissionModel {
             loading_steps: steps(rules.loading_s),
             reach: rules.reach_m as f32,
             blind_speed: 1.0 - rules.blind_speed_loss,
-            cut_off_steps: steps(rules.cut_off_s),
+            cut_off_steps: (rules.cut_off_s / control_s).round() as u64,
             rules: *rules,
         }
     }

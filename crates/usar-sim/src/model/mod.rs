@@ -29,7 +29,7 @@ pub use mission::{ErrandModel, LowLevel, MissionModel};
 pub use places::{RestSlots, rescuee_places};
 pub use rescuee::RescueeModel;
 pub use right_of_way::{Patience, ReciprocalModel, RetreatModel, RightOfWayModel, RuleKind, SetsModel};
-pub use robot::{RobotModel, RobotSpec};
+pub use robot::{Brakes, RobotModel, RobotSpec};
 pub use task::TaskModel;
 pub use telemetry::{BlackoutModel, Liar, LieModel, MediumModel, TelemetryModel};
 pub use timeline::{Action, Due};
@@ -38,12 +38,6 @@ use crate::geometry::{RadiationZone, vector};
 use crate::hash::PERIOD_S;
 use crate::planning::{Inflation, Planner};
 use crate::scenario::{Measure, NeedFile, Scenario, ZoneFile};
-
-/// Robots look around, and look for work, once in this many usual steps, which are 0.1 s.
-const SENSING_STEPS: u64 = 5;
-
-/// Usual steps between two checks that the path to a robot's next waypoint is still free.
-const ROUTE_CHECK_STEPS: u64 = 25;
 
 /// Everything that is fixed in one trial.
 #[derive(Debug)]
@@ -57,10 +51,8 @@ pub struct Model {
     pub steps: u64,
     /// Steps between two links of the hash chain.
     pub(crate) link_steps: u64,
-    /// Robots look around, and look for work, once in this many steps.
-    pub(crate) sensing_steps: u64,
-    /// Steps between two checks that the path to a robot's next waypoint is still free.
-    pub(crate) route_check_steps: u64,
+    /// Steps from one control step to the next. What robots count, they count in control steps.
+    pub(crate) control_steps: u64,
     /// Width and height of the arena, in metres.
     pub arena: Vector,
     /// Names of the roles.
@@ -139,8 +131,7 @@ impl Model {
             dt: dt_s as f32,
             steps: scenario.steps(),
             link_steps: ((PERIOD_S / dt_s).round() as u64).max(1),
-            sensing_steps: scenario.fidelity.period(SENSING_STEPS),
-            route_check_steps: scenario.fidelity.period(ROUTE_CHECK_STEPS),
+            control_steps: scenario.control_steps(),
             arena: vector(scenario.arena_m),
             roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
             needs: scenario.needs.iter().map(need).collect(),
@@ -155,7 +146,7 @@ impl Model {
             errands: scenario.errands.iter().map(ErrandModel::compile).collect(),
             timeline: timeline::timeline(scenario, layout),
             costs: CostModel::compile(&scenario.costs, dt_s),
-            mission: MissionModel::compile(&scenario.mission, dt_s),
+            mission: MissionModel::compile(&scenario.mission, dt_s, scenario.control_steps() as f64 * dt_s),
             right_of_way: RightOfWayModel::compile(scenario),
             planner: Planner::new(scenario),
             inflation: Inflation::of(scenario),
@@ -170,6 +161,21 @@ impl Model {
     /// Number of steps in this many seconds.
     pub(crate) fn steps_in(&self, seconds: f64) -> u64 {
         (seconds / self.dt_s).round() as u64
+    }
+
+    /// Number of control steps in this many seconds.
+    pub(crate) fn control_steps_in(&self, seconds: f64) -> u64 {
+        (seconds / (self.control_steps as f64 * self.dt_s)).round() as u64
+    }
+
+    /// Whether robots look around and choose their velocities in this step.
+    pub(crate) fn is_control_step(&self, step: u64) -> bool {
+        step.is_multiple_of(self.control_steps)
+    }
+
+    /// Whether something that is done once in `period` steps is due in a control step.
+    pub(crate) fn is_due(&self, step: u64, period: u64) -> bool {
+        step % period < self.control_steps
     }
 
     /// The ids of all tasks, in the order of their table.

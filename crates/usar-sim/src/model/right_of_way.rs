@@ -1,4 +1,5 @@
-//! Right of way, compiled: the constants of both rules, with times in steps.
+//! Right of way, compiled: the constants of both rules, with times in control steps, which are called steps
+//! here.
 
 use parry2d::math::Vector;
 
@@ -137,7 +138,9 @@ pub struct RetreatModel {
 impl RightOfWayModel {
     /// Compiles the rules of a scenario.
     pub fn compile(scenario: &Scenario) -> Self {
-        let steps = |seconds: f64| (seconds / scenario.dt_s).round() as u32;
+        let control_steps = scenario.control_steps() as u32;
+        let control_s = f64::from(control_steps) * scenario.dt_s;
+        let steps = |seconds: f64| (seconds / control_s).round() as u32;
         let values = scenario.conflicts.right_of_way();
         let ask_again = steps(ASK_AGAIN_S).max(1);
         let retreats = RetreatModel {
@@ -167,7 +170,7 @@ impl RightOfWayModel {
                 ask_again,
                 horizon: values.horizon_s as f32,
                 patience: Patience {
-                    deadlock: values.deadlock_steps,
+                    deadlock: values.deadlock_steps.div_ceil(control_steps),
                     livelock: steps(LIVELOCK_S),
                     back_off: steps(BACK_OFF_S),
                 },

@@ -51,8 +51,8 @@ pub struct RobotSpec {
     pub top_speed: f32,
     /// Greatest acceleration and braking of the drive, in metres per second squared.
     pub acceleration: f32,
-    /// Deceleration that it plans with, in metres per second squared.
-    pub braking: f32,
+    /// How it plans to brake.
+    pub brakes: Brakes,
     /// Greatest change of its velocity in one step, in metres per second.
     pub greatest_change: f32,
     /// Range within which debris and radiation are noticed, in metres.
@@ -69,8 +69,31 @@ pub struct RobotSpec {
     pub constants: Vec<f64>,
 }
 
+/// How a robot plans to brake.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Brakes {
+    /// Deceleration, in metres per second squared.
+    pub deceleration: f32,
+    /// Time that may pass before it looks again, beyond one step, in seconds.
+    pub delay_s: f32,
+}
+
+impl Brakes {
+    /// The way to a stop from a speed, in metres.
+    pub fn way(self, speed: f32) -> f32 {
+        speed * self.delay_s + speed * speed / (2.0 * self.deceleration)
+    }
+
+    /// The greatest speed at which a robot can still slow down to `target` metres per second within `way`
+    /// metres.
+    pub fn speed_before(self, target: f32, way: f32) -> f32 {
+        let lost = self.deceleration * self.delay_s;
+        (lost * lost + target * target + 2.0 * self.deceleration * way).sqrt() - lost
+    }
+}
+
 impl RobotSpec {
-    fn compile(body: &RoleFile, scenario: &Scenario) -> Self {
+    fn compile(body: &RoleFile, scenario: &Scenario, delay_s: f64) -> Self {
         let acceleration = body.acceleration_mps2 as f32;
         let constant = |name: &String| body.constants.get(name).copied().unwrap_or(0.0);
         Self {
@@ -82,7 +105,7 @@ impl RobotSpec {
             speed_mps: body.speed_mps,
             top_speed: body.speed_mps as f32,
             acceleration,
-            braking: PLANNED_BRAKING * acceleration,
+            brakes: Brakes { deceleration: PLANNED_BRAKING * acceleration, delay_s: delay_s as f32 },
             greatest_change: (body.acceleration_mps2 * scenario.dt_s) as f32,
             sensing_m: body.sensing_m,
             observing_m: body.observing_m,
@@ -97,8 +120,9 @@ impl RobotSpec {
 impl RobotModel {
     /// All robots of a scenario, by id.
     pub(super) fn compile_all(scenario: &Scenario, starts: &[RobotStart]) -> Vec<Arc<Self>> {
-        let specs =
-            scenario.bodies().map(|(body, count)| (Arc::new(RobotSpec::compile(&body, scenario)), count));
+        let delay_s = (scenario.control_steps() - 1) as f64 * scenario.dt_s;
+        let spec = |body: RoleFile| Arc::new(RobotSpec::compile(&body, scenario, delay_s));
+        let specs = scenario.bodies().map(|(body, count)| (spec(body), count));
         let specs = specs.flat_map(|(spec, count)| (0..count).map(move |_| Arc::clone(&spec)));
         let slots = RestSlots::of(scenario);
         let tasks = scenario.tasks.len() as u16;

@@ -21,6 +21,9 @@ pub use traveller::{Goal, Traveller};
 /// that it does not see may block the detour as well.
 const DETOUR_AFTER_S: f64 = 4.0;
 
+/// Time between two checks that the way to a robot's next waypoint is still free, in seconds.
+const CHECK_EVERY_S: f64 = 0.5;
+
 /// A detour leads round standing robots within this distance, in metres.
 const DETOUR_RANGE_M: f32 = 8.0;
 
@@ -115,21 +118,20 @@ impl Navigator {
         let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {
             return Vector::ZERO;
         };
-        let braking = robot.spec.braking;
-        let reachable = |target: f32, distance: f32| (target * target + 2.0 * braking * distance).sqrt();
+        let brakes = robot.spec.brakes;
         let ahead = route.ahead();
         let to_next = ahead[0] - robot.position;
         let distance = to_next.length();
         let direction = to_next.normalize_or_zero();
-        if 2.0 * braking * distance > speed * speed * 1.001 {
+        if distance > brakes.way(speed) * 1.001 {
             return direction * speed; // the next waypoint is farther than the way that it takes to stop
         }
         let left = traveller.length(robot.position).unwrap_or(0.0);
-        let mut wished = speed.min(reachable(0.0, left));
+        let mut wished = speed.min(brakes.speed_before(0.0, left));
         if let Some(after) = ahead.get(1) {
             let turn = direction.dot((*after - ahead[0]).normalize_or_zero());
             let in_turn = speed * f32::midpoint(1.0, turn).max(0.3);
-            wished = wished.min(reachable(in_turn, distance));
+            wished = wished.min(brakes.speed_before(in_turn, distance));
         }
         direction * wished
     }
@@ -142,7 +144,7 @@ where
 {
     /// Plans the routes of some of the robots, whose journeys these are.
     fn plan(&self, team: &'o [Robot], travellers: &mut [Traveller], trails: &mut [Trail]) {
-        let detour_steps = self.model.steps_in(DETOUR_AFTER_S);
+        let detour_steps = self.model.control_steps_in(DETOUR_AFTER_S);
         for ((robot, traveller), trail) in team.iter().zip(travellers).zip(trails) {
             trail.note(robot.position);
             let Some(goal) = traveller.goal else { continue };
@@ -171,7 +173,8 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
     /// Plans a route if one is due.
     fn keep_on_route(&self, traveller: &mut Traveller, detour_steps: u64) {
         let Self { outlook, robot, belief, .. } = self;
-        let check_due = (outlook.step + robot.id.0 as u64).is_multiple_of(outlook.model.route_check_steps);
+        let turn = outlook.step / outlook.model.control_steps + robot.id.0 as u64;
+        let check_due = turn.is_multiple_of(outlook.model.control_steps_in(CHECK_EVERY_S).max(1));
         let attempt = traveller.attempt(detour_steps);
         let news = belief.news_since(traveller.seen);
         traveller.seen = belief.seen();

@@ -84,6 +84,8 @@ struct Leg {
     from: usize,
     to: Vector,
     end: End,
+    /// The number of legs noted before it.
+    number: usize,
 }
 
 /// A place that was reached.
@@ -104,6 +106,8 @@ struct Search<'p, 'a> {
     wanted: Wanted,
     places: Vec<Place>,
     legs: BinaryHeap<Leg>,
+    /// The number of legs noted so far.
+    noted: usize,
     /// Numbers of the outlines that legs ran into: ways may lead round them.
     heeded: Vec<usize>,
     /// For each corner, whether it was reached turning right, and left.
@@ -135,6 +139,7 @@ impl<'a> Plane<'a> {
             wanted,
             places: vec![start],
             legs: BinaryHeap::new(),
+            noted: 0,
             heeded: Vec::new(),
             is_reached: vec![[false; 2]; corners],
         };
@@ -223,7 +228,8 @@ impl Search<'_, '_> {
         if place.turn.is_none_or(|turn| turn.leads_to(way, 0.0)) {
             let (length, left) = (place.length + way.length(), (self.goal - to).length());
             let estimate = if self.wanted == Wanted::Shortest { length + left } else { left };
-            self.legs.push(Leg { estimate, length, from, to, end });
+            self.legs.push(Leg { estimate, length, from, to, end, number: self.noted });
+            self.noted += 1;
         }
     }
 
@@ -316,10 +322,10 @@ impl Outline<'_> {
     }
 }
 
-/// The most promising leg is the greatest; of equally promising ones, that from the place reached first.
+/// The most promising leg is the greatest; of equally promising ones, that noted first.
 impl Ord for Leg {
     fn cmp(&self, other: &Self) -> Ordering {
-        other.estimate.total_cmp(&self.estimate).then(other.from.cmp(&self.from))
+        other.estimate.total_cmp(&self.estimate).then(other.number.cmp(&self.number))
     }
 }
 

@@ -17,6 +17,11 @@ pub(super) fn format() -> u32 {
     super::FORMAT
 }
 
+/// Default time from one control step to the next, in seconds.
+pub(super) fn control_period_s() -> f64 {
+    0.1
+}
+
 /// One role, for scenarios in which all robots are alike.
 pub(super) fn roles() -> Vec<RoleFile> {
     vec![RoleFile { name: "robot".to_owned(), ..RoleFile::default() }]

@@ -12,13 +12,17 @@ pub(super) const USUAL_STEP_S: f64 = 0.02;
 /// Length of a step of a coarse trial, in seconds.
 const COARSE_STEP_S: f64 = 0.05;
 
+/// A robot chooses its velocity anew before it has gone farther than this, in metres: no farther than it may
+/// be from a waypoint that it passes.
+const CONTROL_WAY_M: f64 = 0.25;
+
 /// How finely a trial is simulated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Fidelity {
     /// In steps of `dt_s`. The default.
     #[default]
     AsWritten,
-    /// In steps of 0.05 s, whatever `dt_s` is, for about twice as many trials in the same time. In a second
+    /// In steps of 0.05 s, whatever `dt_s` is, for about a fifth more trials in the same time. In a second
     /// everything costs the same as in steps of `dt_s`: each cost `per_step` grows with the step, and the
     /// `deadlock_steps` last as long.
     Coarse,
@@ -28,15 +32,6 @@ impl Fidelity {
     #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
     pub(super) fn is_as_written(&self) -> bool {
         *self == Self::AsWritten
-    }
-
-    /// The period of something that is done once in so many usual steps, in steps of this fidelity. As
-    /// written, it is that many steps of whatever length.
-    pub(crate) fn period(self, usual_steps: u64) -> u64 {
-        match self {
-            Self::AsWritten => usual_steps,
-            Self::Coarse => (usual_steps as f64 * USUAL_STEP_S / COARSE_STEP_S).round() as u64,
-        }
     }
 }
 
@@ -51,6 +46,13 @@ impl ScenarioFile {
 }
 
 impl Scenario {
+    /// Steps from one control step to the next: at least one.
+    pub(crate) fn control_steps(&self) -> u64 {
+        let fastest = self.bodies().map(|(body, _)| body.speed_mps).fold(0.0, f64::max);
+        let period_s = self.control_period_s.min(CONTROL_WAY_M / fastest);
+        ((period_s / self.dt_s + 1e-9) as u64).max(1)
+    }
+
     /// The scenario as it is simulated: in steps of its fidelity, with what it states for each step.
     pub(super) fn in_its_steps(mut self) -> Self {
         let file = &mut self.0;
@@ -91,7 +93,6 @@ mod tests {
         assert_eq!(set(&paper, "fidelity", "AsWritten"), paper);
         let slow = set(&paper, "dt_s", "0.04");
         assert_eq!(slow.of_trial(1).unwrap(), slow);
-        assert_eq!([5, 25].map(|steps| Fidelity::AsWritten.period(steps)), [5, 25]);
     }
 
     #[test]
@@ -129,8 +130,14 @@ mod tests {
     }
 
     #[test]
-    fn robots_look_around_as_often() {
-        assert_eq!([5, 25].map(|steps| Fidelity::Coarse.period(steps)), [2, 10]);
+    fn control_steps_are_0_1_s_apart_but_for_fast_robots() {
+        let steps = |path: &str, value: &str| set(&paper(), path, value).of_trial(1).unwrap().control_steps();
+        assert_eq!((steps("dt_s", "0.02"), steps("dt_s", "0.03"), steps("fidelity", "Coarse")), (5, 3, 2));
+        assert_eq!((steps("control_period_s", "0.001"), steps("control_period_s", "1.0")), (1, 5));
+        assert_eq!(
+            (steps("roles.carrier.speed_mps", "3.0"), steps("roles.carrier.speed_mps", "5.9")),
+            (4, 2)
+        );
     }
 
     #[test]

@@ -44,6 +44,10 @@ pub struct ScenarioFile {
     pub duration_s: f64,
     /// Length of a simulation step, in seconds.
     pub dt_s: f64,
+    /// Robots look around and choose their velocities once in this time, in seconds, rounded down to whole
+    /// steps; robots that would go farther than 0.25 m in it do so more often.
+    #[serde(default = "super::defaults::control_period_s")]
+    pub control_period_s: f64,
     /// How finely a trial is simulated: as written, or in longer steps at the same costs.
     #[serde(default, skip_serializing_if = "Fidelity::is_as_written")]
     pub fidelity: Fidelity,

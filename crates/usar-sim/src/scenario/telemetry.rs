@@ -84,7 +84,7 @@ pub struct Gauge {
 pub struct Witness {
     /// Standard deviation of the highest speed seen in a round, as a share of it.
     pub sd: f64,
-    /// Fewest looks in a round for a rating. Robots look once every 0.1 s.
+    /// Fewest looks in a round for a rating. Robots look in every control step.
     pub least_looks: u32,
 }
 

@@ -157,6 +157,7 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
     }
     check.number("duration_s", file.duration_s, limits::DURATION_S);
     check.number("dt_s", file.dt_s, limits::DT_S);
+    check.number("control_period_s", file.control_period_s, limits::CONTROL_PERIOD_S);
     check.number("arena_m[0]", file.arena_m[0], limits::ARENA_M);
     check.number("arena_m[1]", file.arena_m[1], limits::ARENA_M);
 }

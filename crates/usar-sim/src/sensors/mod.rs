@@ -58,9 +58,6 @@ pub(crate) fn look_around<'b>(
     step: u64,
     sent: &mut Vec<Report>,
 ) {
-    if !step.is_multiple_of(model.sensing_steps) {
-        return;
-    }
     let wrecks = world.robots.iter().filter(|robot| robot.wreck_at.is_some());
     let wrecks: SmallVec<[usize; 16]> = wrecks.map(|robot| robot.id.index()).collect();
     for robot in world.robots.iter().filter(|robot| robot.is_able()) {

@@ -325,11 +325,15 @@ impl Simulation {
         &mut self.state
     }
 
-    /// The first part of a step: robots sense, and a question may arise.
+    /// The first part of a step. In a control step robots sense, and a question may arise.
     fn begin_step(&mut self, done: &mut impl FnMut(Stage)) {
         let (state, model) = (&mut self.state, &self.setup.model);
         state.log.clear();
         state.happen(model);
+        state.is_midway = true;
+        if !model.is_control_step(state.step) {
+            return;
+        }
         state.sense(model, &mut self.scratch.heard);
         if state.telemetry.is_some() {
             state.report(model);
@@ -337,21 +341,27 @@ impl Simulation {
         }
         done(Stage::Sense);
         state.prepare(model);
-        state.is_midway = true;
         self.take_question();
     }
 
-    /// The rest of a step. All robots decide from the same snapshot, claims on rescuees included; then all
-    /// act.
+    /// The rest of a step. In a control step all robots decide from the same snapshot, claims on rescuees
+    /// included; in another one, robots that are close to others adapt their velocities. Then all act.
     fn finish_step(&mut self, done: &mut impl FnMut(Stage)) -> Result<(), String> {
         let (state, model, scratch) = (&mut self.state, &self.setup.model, &mut self.scratch);
-        let (mission, mut scene) = state.scene(model);
-        mission.act(&mut scene);
-        done(Stage::Mission);
+        let is_control_step = model.is_control_step(state.step);
+        if is_control_step {
+            let (mission, mut scene) = state.scene(model);
+            mission.act(&mut scene);
+            done(Stage::Mission);
+        }
         let decided = state.listen(0, model.dt_s());
-        state.plan(model, scratch);
-        done(Stage::Plan);
-        state.resolve(model, scratch);
+        if is_control_step {
+            state.plan(model, scratch);
+            done(Stage::Plan);
+            state.resolve(model, scratch);
+        } else {
+            state.adapt(scratch);
+        }
         done(Stage::Resolve);
         state.drive();
         done(Stage::Drive);
@@ -361,7 +371,9 @@ impl Simulation {
         done(Stage::Integrate);
         state.expose(model);
         done(Stage::Exposure);
-        state.rescue(model, &mut scratch.heard);
+        if model.is_control_step(state.step) {
+            state.rescue(model, &mut scratch.heard);
+        }
         done(Stage::Rescue);
         state.listen(decided, model.dt_s());
         if state.step.is_multiple_of(model.link_steps) {

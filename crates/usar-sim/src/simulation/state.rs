@@ -19,7 +19,7 @@ use crate::mission::{Activity, Agent, Mission, Scene};
 use crate::model::Model;
 use crate::navigation::{Navigator, Outlook};
 use crate::record::DecisionRecord;
-use crate::report::Report;
+use crate::report::{Report, Track};
 use crate::robot::{Robot, STANDING_MPS};
 use crate::scenario::LevelSource;
 use crate::sensors::{base, look_around, team_mates};
@@ -62,6 +62,7 @@ pub(super) struct Scratch {
     pub(super) heard: Vec<Report>,
     movers: Vec<Mover<'static>>,
     conflict: conflict::Scratch,
+    tracks: Vec<Track>,
     /// Whether the steps of a large team are done on all threads.
     in_parallel: bool,
     /// See [`Simulation::steer`](super::Simulation::steer).
@@ -260,10 +261,18 @@ impl State {
         }
     }
 
+    /// Robots adapt their velocities to how the others move now.
+    pub(super) fn adapt(&mut self, scratch: &mut Scratch) {
+        scratch.tracks.clear();
+        scratch.tracks.extend(team_mates::tracks(&self.world));
+        self.resolver.adapt(&scratch.tracks, &mut scratch.conflict);
+    }
+
     /// Changes each robot's velocity towards that of its directive, as far as its acceleration allows.
     pub(super) fn drive(&mut self) {
         for (robot, directive) in self.world.robots.iter().zip(self.resolver.directives()) {
-            let change = directive.velocity() - robot.velocity;
+            let wished = if robot.is_able() { directive.velocity() } else { Vector::ZERO };
+            let change = wished - robot.velocity;
             let change = change.clamp_length_max(robot.spec.greatest_change);
             self.world.physics.drive(robot.id, change);
         }
@@ -276,7 +285,7 @@ impl State {
         let (metrics, faults) = (&mut self.listeners.metrics, &self.faults);
         for (robot, zones) in self.world.robots_in_zones(model) {
             let speed = robot.velocity.length();
-            metrics.robots[robot.id.index()].note_way(f64::from(speed) * model.dt_s());
+            metrics.robots[robot.id.index()].note_step(f64::from(speed) * model.dt_s());
             let agent = &self.mission.crew.agents[robot.id.index()];
             if !robot.is_able() || matches!(agent.activity, Activity::Resting(_)) {
                 continue;
@@ -392,7 +401,7 @@ fn mover<'s>(
         trail: navigator.trail(robot.id),
         radius: robot.radius(),
         speed,
-        braking: robot.spec.braking,
+        brakes: robot.spec.brakes,
         priority: PriorityKey::new(rule, robot.id, class, [robot.energy, robot.hp]),
         known: (!robot.is_aerial())
             .then(|| beliefs.of(mission.crew.holder_of(robot.id, model)).obstacles(robot.radius())),

@@ -152,10 +152,8 @@ impl Telemetry {
     /// The part of a step: robots look at their mates, report when it is time, and are heard.
     pub(crate) fn step(&mut self, now: &Now<'_>, log: &mut EventLog) {
         let Some(rules) = &now.model.telemetry else { return };
-        if now.step.is_multiple_of(now.model.sensing_steps) {
-            self.look(now, rules);
-        }
-        if now.step.is_multiple_of(rules.every_steps) {
+        self.look(now, rules);
+        if now.model.is_due(now.step, rules.every_steps) {
             now.team.iter().filter(|robot| robot.is_able()).for_each(|robot| self.report(robot, now, log));
         }
         self.deliver(now.time_s(), log);

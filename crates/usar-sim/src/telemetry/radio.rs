@@ -91,7 +91,7 @@ impl Telemetry {
         let steps = |seconds: f64| (seconds / now.model.dt_s()).round() as u64;
         let into = now.step.saturating_sub(steps(told.window_s[0]));
         let every = steps(every_s).max(1);
-        if !into.is_multiple_of(every) {
+        if !now.model.is_due(into, every) {
             return None;
         }
         let mut draws = stream_at(rules.seed, Purpose::Phantom, u64::from(liar.id.0), into / every);

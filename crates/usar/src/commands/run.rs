@@ -115,7 +115,7 @@ impl Arguments {
             "{}, policy {}, seed {seed}: {} s simulated, {}",
             scenario.name,
             spec.label,
-            record.time_s,
+            (record.time_s * 1e6).round() / 1e6,
             record.status.name().replace('_', " ")
         )?;
         if !record.rounds.is_empty() {

@@ -39,7 +39,7 @@ fn a_small_trial_tells_its_story_and_every_event_has_its_time() {
     let run = |arguments: &[&str]| usar(folder.path(), arguments);
     let said = succeeds(&run(&["run", &scenario(), "--events", "e.jsonl"]));
     let story: Vec<&str> = said.lines().skip_while(|line| !line.starts_with("At ")).collect();
-    assert!(story.iter().any(|line| line.contains("robot 0 makes room for robot 1, for ")), "{said}");
+    assert!(story.iter().any(|line| line.contains("robot 1 makes room for robot 0, for ")), "{said}");
     assert!(story.iter().any(|line| line.contains("robots 0 and 1 meet")), "{said}");
     assert!(story.iter().any(|line| line.ends_with("robot 0 has arrived.")), "{said}");
     assert!(story.iter().all(|line| line.chars().count() <= 80), "{said}");

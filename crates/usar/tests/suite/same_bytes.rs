@@ -155,7 +155,7 @@ fn a_trial_goes_on_from_a_snapshot_in_a_new_process() {
     let folder = short();
     let run = |arguments: &[&str]| usar(folder.path(), &[&["run", "short.ron"], arguments].concat());
     let whole = succeeds(&run(&["--policy", "DIS", "--seed", "5", "--json"]));
-    for seconds in ["0", "17.3", "60"] {
+    for seconds in ["0", "17.34", "60"] {
         let file = format!("{seconds}.snapshot");
         let saved = run(&["--policy", "DIS", "--seed", "5", "--json", "--save", &file, "--save-at", seconds]);
         assert_eq!(succeeds(&saved), whole);
@@ -170,10 +170,10 @@ fn a_trial_goes_on_from_a_snapshot_in_a_new_process() {
     refused(&["--save", "0.snapshot", "--save-at", "1"], "0.snapshot exists; nothing was overwritten");
     refused(&["--save", "x", "--save-at", "61"], "--save-at: must be from 0 to 60 s, found 61");
     refused(&["--resume", "short.ron"], "short.ron: is not a snapshot of a trial");
-    let mut bytes = std::fs::read(folder.path().join("17.3.snapshot")).unwrap();
+    let mut bytes = std::fs::read(folder.path().join("17.34.snapshot")).unwrap();
     std::fs::write(folder.path().join("cut"), &bytes[..bytes.len() - 1]).unwrap();
     refused(&["--resume", "cut"], "cut: should have ");
     bytes[8] += 1;
     std::fs::write(folder.path().join("later"), &bytes).unwrap();
-    refused(&["--resume", "later"], "later: is a snapshot of format 14; this program reads format 13");
+    refused(&["--resume", "later"], "later: is a snapshot of format 15; this program reads format 14");
 }

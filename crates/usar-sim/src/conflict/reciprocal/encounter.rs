@@ -1,6 +1,7 @@
 //! How the ways of two robots relate, and what follows for their avoidance.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 /// Time within which robots avoid a collision, in seconds. With a longer horizon, robots keep farther apart
 /// than crowds allow. With a shorter one, they swerve too late.
@@ -22,7 +23,7 @@ const CROSSING: f32 = 0.3;
 const PARALLEL: f32 = 0.999;
 
 /// How the ways of two robots relate. The relation is symmetric.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Encounter {
     /// One makes room for the other.
     MakesRoom,

@@ -6,6 +6,7 @@
 //! O(n) on average, O(n^2) at worst.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 /// Two borders are parallel if the cross product of their directions is smaller than this.
 const PARALLEL: f32 = 1e-5;
@@ -15,7 +16,7 @@ const PARALLEL: f32 = 1e-5;
 const TOO_FAST: f32 = 1.001;
 
 /// Velocities on the left of a line through `point` along the unit vector `direction`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct HalfPlane {
     /// A velocity on the border, in metres per second.
     pub(super) point: Vector,

@@ -17,20 +17,23 @@ mod unhindered;
 mod velocity;
 mod walls;
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::predict::{largest, range};
 use super::retreat::{Crowd, Retreats};
-use super::{MANY_ROBOTS, Mover, Scratch, Step};
+use super::{Directive, MANY_ROBOTS, Mover, Scratch, Step};
 use crate::event::Event;
 use crate::model::ReciprocalModel;
+use crate::report::Track;
 use encounter::LONGEST_HORIZON_S;
+use half_planes::HalfPlane;
 pub(super) use passage::Turn;
 use passage::{Entrant, Entry, Follows, decide};
 use steering::Steering;
 pub(super) use steering::{Near, Sight};
 pub(super) use unhindered::Unhindered;
-use velocity::MARGIN_M;
+use velocity::{Avoidance, MARGIN_M};
 
 /// Robots with a wider gap between them do not heed one another, in metres, unless the fastest need more to
 /// stop. It seldom matters: robots heed the nearest few.
@@ -65,6 +68,29 @@ pub(super) struct Reciprocal {
     blocked_steps: Vec<u32>,
     /// For each robot, its state at a narrow passage.
     entries: Vec<Entry>,
+    /// For each robot that is close to others, how it avoids them until the next control step.
+    avoidances: Vec<Avoidance>,
+}
+
+/// What one robot adapts, and by what.
+type Adapts<'a> = ((&'a mut Directive, &'a Avoidance), &'a Track);
+
+impl Reciprocal {
+    /// Adapts the velocities of robots that are close to others to how robots move now.
+    pub(super) fn adapt(&self, directives: &mut [Directive], tracks: &[Track], scratch: &mut Scratch) {
+        let adapt = |planes: &mut Vec<HalfPlane>, ((directive, avoidance), me): Adapts<'_>| {
+            if !avoidance.neighbours.is_empty() {
+                directive.set_velocity(avoidance.velocity(*me, |j| tracks[j], planes));
+            }
+        };
+        if scratch.in_parallel && tracks.len() >= MANY_ROBOTS {
+            let robots = directives.par_iter_mut().zip(&self.avoidances).zip(tracks);
+            robots.for_each_init(Vec::new, adapt);
+        } else {
+            let robots = directives.iter_mut().zip(&self.avoidances).zip(tracks);
+            robots.for_each(|robot| adapt(&mut scratch.sight.planes, robot));
+        }
+    }
 }
 
 impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
@@ -73,6 +99,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
     pub(super) fn resolve(&mut self) {
         let Self { rules, state, scratch, movers, .. } = self;
         state.blocked_steps.resize(movers.len(), 0);
+        state.avoidances.resize_with(movers.len(), Avoidance::default);
         scratch.neighbours.sort(movers);
         state.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
         self.hold_before_passages();
@@ -123,7 +150,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         for (i, _, ahead) in waiting {
             let me = &mut self.movers[i];
             let stops_in: f32 = (ahead - me.radius - WAIT_AT_M).max(0.0);
-            me.preferred = me.preferred.clamp_length_max((2.0 * me.braking * stops_in).sqrt());
+            me.preferred = me.preferred.clamp_length_max(me.brakes.speed_before(0.0, stops_in));
         }
     }
 
@@ -173,7 +200,7 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         let Self { rules, state, scratch, movers, directives, .. } = self;
         let Scratch { neighbours, unhindered, turns, directions, heads, near, sight, in_parallel, .. } =
             &mut **scratch;
-        let stopping = |mover: &Mover| mover.speed * mover.speed / mover.braking;
+        let stopping = |mover: &Mover| 2.0 * mover.brakes.way(mover.speed);
         let heeded_within = movers.iter().map(stopping).fold(HEEDED_WITHIN_M, f32::max);
         let range = range(movers, MARGIN_M, LONGEST_HORIZON_S).min(heeded_within + 2.0 * largest(movers));
         let in_parallel = *in_parallel && movers.len() >= MANY_ROBOTS;
@@ -186,9 +213,9 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         near.resize_with(movers.len(), Near::default);
         let steering = Steering { rules, movers, neighbours, unhindered, turns, directions, heads, range };
         if in_parallel {
-            steering.steer_in_parallel(directives, near);
+            steering.steer_in_parallel(directives, &mut state.avoidances, near);
         } else {
-            steering.steer(directives, near, sight);
+            steering.steer(directives, &mut state.avoidances, near, sight);
         }
     }
 

@@ -127,7 +127,7 @@ impl<'a> Entrant<'a> {
         let at = me.passages.iter().position(|passage| left > passage.leaves_at - me.radius)?;
         let passage = &me.passages[at];
         let ahead = left - passage.enters_at;
-        let stopping = me.speed * me.speed / (2.0 * me.braking);
+        let stopping = me.brakes.way(me.speed);
         let corner = |pick: fn(Vector, Vector) -> Vector| passage.points.iter().copied().reduce(pick);
         let border = Vector::splat(me.radius);
         (ahead <= ASK_FROM_M + stopping).then_some(Self {

@@ -8,9 +8,7 @@ use super::encounter::Encounter;
 use super::half_planes::HalfPlane;
 use super::passage::Turn;
 use super::unhindered::Unhindered;
-use super::velocity::{
-    HEEDED, MARGIN_M, Neighbour, SHARE_OF_PRIORITY, SHARE_OF_THE_FIRST, avoiding_velocity,
-};
+use super::velocity::{Avoidance, HEEDED, MARGIN_M, Neighbour, SHARE_OF_PRIORITY, SHARE_OF_THE_FIRST};
 use super::walls::NearWalls;
 use crate::conflict::passing::nearest_in_the_way;
 use crate::conflict::predict::Neighbours;
@@ -23,13 +21,16 @@ const STILL_MPS: f32 = 0.005;
 /// A robot in a queue waits for the robot ahead if it is slower than this, in metres per second.
 const QUEUES_MPS: f32 = 0.05;
 
+/// A robot adapts its velocity in every step if it would cover the gap to another within this time at its top
+/// speed, in seconds.
+const CLOSE_S: f32 = 0.5;
+
 /// What one robot sees when it looks for its velocity. It is kept only to reuse its memory.
 #[derive(Default)]
 pub(in crate::conflict) struct Sight {
     /// Gap and index of each robot that it heeds.
     heeded: Vec<(f32, usize)>,
-    neighbours: Vec<Neighbour>,
-    planes: Vec<HalfPlane>,
+    pub(super) planes: Vec<HalfPlane>,
 }
 
 impl Sight {
@@ -77,29 +78,48 @@ pub(super) struct Steering<'s, 'm> {
 
 impl Steering<'_, '_> {
     /// The directives of all robots, one robot after the other.
-    pub(super) fn steer(&self, directives: &mut [Directive], near: &mut [Near], sight: &mut Sight) {
-        for (i, (directive, near)) in directives.iter_mut().zip(near).enumerate() {
-            *directive = self.directive(i, near, sight);
+    pub(super) fn steer(
+        &self,
+        directives: &mut [Directive],
+        avoidances: &mut [Avoidance],
+        near: &mut [Near],
+        sight: &mut Sight,
+    ) {
+        for (i, ((directive, avoidance), near)) in directives.iter_mut().zip(avoidances).zip(near).enumerate()
+        {
+            *directive = self.directive(i, avoidance, near, sight);
         }
     }
 
     /// The same, on all threads.
-    pub(super) fn steer_in_parallel(&self, directives: &mut [Directive], near: &mut [Near]) {
-        let robots = directives.par_iter_mut().zip(near).enumerate();
-        robots.for_each_init(Sight::default, |sight, (i, (directive, near))| {
-            *directive = self.directive(i, near, sight);
+    pub(super) fn steer_in_parallel(
+        &self,
+        directives: &mut [Directive],
+        avoidances: &mut [Avoidance],
+        near: &mut [Near],
+    ) {
+        let robots = directives.par_iter_mut().zip(avoidances).zip(near).enumerate();
+        robots.for_each_init(Sight::default, |sight, (i, ((directive, avoidance), near))| {
+            *directive = self.directive(i, avoidance, near, sight);
         });
     }
 
     /// The directive of a robot: the velocity that it takes among the others, or why it stands still.
-    fn directive(&self, i: usize, near: &mut Near, sight: &mut Sight) -> Directive {
+    fn directive(
+        &self,
+        i: usize,
+        avoidance: &mut Avoidance,
+        near: &mut Near,
+        sight: &mut Sight,
+    ) -> Directive {
         let (movers, turn) = (self.movers, &self.turns[i]);
         let me = &movers[i];
         near.robots.clear();
+        avoidance.neighbours.clear();
         if !me.can_make_room && !me.wishes_to_move() {
             return Directive::Stand;
         }
-        let velocity = self.velocity(i, near, sight);
+        let velocity = self.velocity(i, avoidance, near, sight);
         let is_still = velocity.length() < STILL_MPS;
         if let Some(head) = self.heads[i] {
             return Directive::Retreat { velocity, room_for: movers[head].robot };
@@ -120,7 +140,7 @@ impl Steering<'_, '_> {
 
     /// The velocity that a robot takes. Looks for the robots near it if it needs them, now or because it is
     /// stuck.
-    fn velocity(&self, i: usize, near: &mut Near, sight: &mut Sight) -> Vector {
+    fn velocity(&self, i: usize, avoidance: &mut Avoidance, near: &mut Near, sight: &mut Sight) -> Vector {
         let (me, arena) = (&self.movers[i], self.rules.retreats.arena);
         let is_free = self.unhindered.is_free(i) && near.walls.are_clear(me, arena);
         let may_be_stuck = me.stalled_steps >= self.rules.ask_again.min(self.rules.stuck);
@@ -131,12 +151,18 @@ impl Steering<'_, '_> {
             return me.preferred.clamp_length_max(me.speed);
         }
         sight.heed(me, self.movers, &near.robots);
-        let Sight { heeded, neighbours, planes } = sight;
-        neighbours.clear();
-        neighbours.extend(heeded.iter().map(|(_, j)| self.neighbour(i, *j)));
-        planes.clear();
-        near.walls.planes(me, arena, planes);
-        avoiding_velocity(me, neighbours, planes, self.turns[i].rank.is_none())
+        avoidance.neighbours.extend(sight.heeded.iter().map(|(_, j)| self.neighbour(i, *j)));
+        avoidance.walls.clear();
+        near.walls.planes(me, arena, &mut avoidance.walls);
+        (avoidance.preferred, avoidance.speed) = (me.preferred, me.speed);
+        avoidance.straight_for_s = me.leg_left / me.speed.max(0.01);
+        avoidance.is_open = self.turns[i].rank.is_none();
+        let track_of = |j: usize| self.movers[j].track();
+        let velocity = avoidance.velocity(me.track(), track_of, &mut sight.planes);
+        if sight.heeded.iter().all(|(gap, _)| *gap > me.speed * CLOSE_S) {
+            avoidance.neighbours.clear();
+        }
+        velocity
     }
 
     /// The robot behind which a robot with this velocity queues, or comes no nearer to its goal.
@@ -165,13 +191,7 @@ impl Steering<'_, '_> {
             _ if me.priority.precedence(&other.priority).is_lt() => SHARE_OF_PRIORITY,
             _ => 1.0 - SHARE_OF_PRIORITY,
         };
-        Neighbour {
-            offset: other.position - me.position,
-            velocity: other.velocity,
-            apart: me.radius + other.radius + MARGIN_M,
-            share,
-            encounter,
-        }
+        Neighbour { robot: j, apart: me.radius + other.radius + MARGIN_M, share, encounter }
     }
 
     fn encounter(&self, i: usize, j: usize) -> Encounter {

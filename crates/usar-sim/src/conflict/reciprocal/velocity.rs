@@ -6,10 +6,11 @@
 //! Robots look no farther ahead than their route goes straight.
 
 use parry2d::math::Vector;
+use serde::{Deserialize, Serialize};
 
 use super::encounter::Encounter;
 use super::half_planes::{HalfPlane, best_velocity};
-use crate::conflict::Mover;
+use crate::report::Track;
 
 /// The least horizon, in seconds, just before a bend of the route.
 const LEAST_HORIZON_S: f32 = 0.3;
@@ -40,12 +41,10 @@ pub(super) const LEAST_SHARE: f32 = SHARE_OF_PRIORITY.min(SHARE_OF_THE_FIRST);
 const KEEP_RIGHT: f32 = 0.35;
 
 /// Another robot, as seen by the robot that avoids it.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Neighbour {
-    /// Its centre relative to the avoiding robot's, in metres.
-    pub(super) offset: Vector,
-    /// Its velocity, in metres per second.
-    pub(super) velocity: Vector,
+    /// Its index.
+    pub(super) robot: usize,
     /// Distance that the two keep between their centres, in metres.
     pub(super) apart: f32,
     /// The avoiding robot's share in the avoidance: 0.5 if both robots do the same, 1 if the other does
@@ -55,32 +54,52 @@ pub(super) struct Neighbour {
     pub(super) encounter: Encounter,
 }
 
-/// The velocity that a robot takes among these neighbours. `planes` are those of walls; the neighbours' are
-/// added. `is_open` says that it is not at a narrow passage.
-pub(super) fn avoiding_velocity(
-    me: &Mover,
-    neighbours: &[Neighbour],
-    planes: &mut Vec<HalfPlane>,
-    is_open: bool,
-) -> Vector {
-    let walls = planes.len();
-    let straight_for_s = me.leg_left / me.speed.max(0.01);
-    let looks_ahead_s = straight_for_s.max(LEAST_HORIZON_S);
-    let plane =
-        |other: &Neighbour| robot_plane(me.velocity, other, other.encounter.horizon_s().min(looks_ahead_s));
-    planes.extend(neighbours.iter().map(plane));
-    let is_in_the_way = |plane: &HalfPlane| !plane.holds(me.preferred);
-    let keeps_right = is_open
-        && planes[walls..].iter().any(is_in_the_way)
-        && neighbours.iter().any(|other| other.encounter.needs_a_side());
-    let preferred = if keeps_right { me.preferred - me.preferred.perp() * KEEP_RIGHT } else { me.preferred };
-    best_velocity(planes, walls, preferred, me.speed)
+/// How a robot avoids others, from one control step to the next.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Avoidance {
+    /// The preferred velocity, in metres per second.
+    pub(super) preferred: Vector,
+    /// Top speed, in metres per second.
+    pub(super) speed: f32,
+    /// Time for which its route goes straight, in seconds.
+    pub(super) straight_for_s: f32,
+    /// Whether it is not at a narrow passage.
+    pub(super) is_open: bool,
+    /// The velocities that keep clear of walls and debris.
+    pub(super) walls: Vec<HalfPlane>,
+    /// The robots that it heeds.
+    pub(super) neighbours: Vec<Neighbour>,
+}
+
+impl Avoidance {
+    /// The velocity that a robot with this track takes among its neighbours. `planes` is only memory.
+    pub(super) fn velocity(
+        &self,
+        me: Track,
+        track_of: impl Fn(usize) -> Track,
+        planes: &mut Vec<HalfPlane>,
+    ) -> Vector {
+        let looks_ahead_s = self.straight_for_s.max(LEAST_HORIZON_S);
+        let plane = |other: &Neighbour| {
+            let horizon = other.encounter.horizon_s().min(looks_ahead_s);
+            robot_plane(me, track_of(other.robot), other, horizon)
+        };
+        planes.clone_from(&self.walls);
+        planes.extend(self.neighbours.iter().map(plane));
+        let (walls, preferred) = (self.walls.len(), self.preferred);
+        let keeps_right = self.is_open
+            && planes[walls..].iter().any(|plane| !plane.holds(preferred))
+            && self.neighbours.iter().any(|other| other.encounter.needs_a_side());
+        let turned = if keeps_right { preferred - preferred.perp() * KEEP_RIGHT } else { preferred };
+        best_velocity(planes, walls, turned, self.speed)
+    }
 }
 
 /// The velocities by which a robot does its share in keeping clear of another.
-fn robot_plane(velocity: Vector, other: &Neighbour, horizon: f32) -> HalfPlane {
-    let Neighbour { offset, apart, share, .. } = *other;
-    let relative = velocity - other.velocity;
+fn robot_plane(me: Track, its: Track, other: &Neighbour, horizon: f32) -> HalfPlane {
+    let Neighbour { apart, share, .. } = *other;
+    let (offset, velocity) = (its.position - me.position, me.velocity);
+    let relative = velocity - its.velocity;
     let distance_squared = offset.length_squared();
     let (direction, change) = if distance_squared <= apart * apart {
         out_of_disc(relative - offset / PART_WITHIN_S, apart / PART_WITHIN_S)
@@ -110,14 +129,42 @@ fn out_of_disc(from_center: Vector, radius: f32) -> (Vector, Vector) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conflict::testing::mover;
+
+    /// A place and a velocity.
+    type Moving = ([f32; 2], [f32; 2]);
+
+    /// The velocity that a robot of at most this speed takes in the origin, driving at `velocity`, among
+    /// these others, each with its share, in the open or at a passage.
+    fn taken(
+        [velocity, preferred]: [[f32; 2]; 2],
+        speed: f32,
+        is_open: bool,
+        others: &[(Moving, f32)],
+    ) -> Vector {
+        let neighbour = |(robot, (_, share)): (usize, &(Moving, f32))| Neighbour {
+            robot,
+            apart: 0.8,
+            share: *share,
+            encounter: Encounter::Other,
+        };
+        let avoidance = Avoidance {
+            preferred: Vector::from(preferred),
+            speed,
+            straight_for_s: 10.0,
+            is_open,
+            walls: Vec::new(),
+            neighbours: others.iter().enumerate().map(neighbour).collect(),
+        };
+        let track = |(position, velocity): Moving| Track {
+            position: Vector::from(position),
+            velocity: Vector::from(velocity),
+        };
+        avoidance.velocity(track(([0.0; 2], velocity)), |j| track(others[j].0), &mut Vec::new())
+    }
 
     /// The velocity that a robot driving east with 1 m/s takes beside one other robot.
     fn among(offset: [f32; 2], velocity: [f32; 2], share: f32) -> Vector {
-        let me = Mover { velocity: Vector::X, speed: 1.0, ..mover(0, [10.0, 10.0], [1.0, 0.0]) };
-        let (offset, velocity) = (Vector::from(offset), Vector::from(velocity));
-        let other = Neighbour { offset, velocity, apart: 0.8, share, encounter: Encounter::Other };
-        avoiding_velocity(&me, &[other], &mut Vec::new(), true)
+        taken([[1.0, 0.0]; 2], 1.0, true, &[((offset, velocity), share)])
     }
 
     /// How near two robots come within the horizon if both keep their velocities.
@@ -147,12 +194,9 @@ mod tests {
 
     #[test]
     fn robots_within_the_margin_part_at_once() {
-        let me = mover(0, [10.0, 10.0], [0.0, 0.0]);
         for missing in [0.001, MARGIN_M, 0.05] {
-            let offset = Vector::new(0.8 - missing, 0.0);
-            let encounter = Encounter::Other;
-            let other = Neighbour { offset, velocity: Vector::ZERO, apart: 0.8, share: 0.5, encounter };
-            let velocity = avoiding_velocity(&me, &[other], &mut Vec::new(), true);
+            let other = ([0.8 - missing, 0.0], [0.0; 2]);
+            let velocity = taken([[0.0; 2]; 2], 2.0, true, &[(other, 0.5)]);
             // Each takes half of the missing distance upon itself.
             let expected = Vector::new(-0.5 * missing / PART_WITHIN_S, 0.0);
             assert!((velocity - expected).length() < 1e-4, "{missing}: {velocity} instead of {expected}");
@@ -166,7 +210,7 @@ mod tests {
 
     /// Velocity and preferred velocity of a robot, places and velocities of the others, and the velocity that
     /// it takes.
-    type Case = ([f32; 2], [f32; 2], &'static [([f32; 2], [f32; 2])], [f32; 2]);
+    type Case = ([f32; 2], [f32; 2], &'static [Moving], [f32; 2]);
 
     /// Robots of 0.4 m, at most 2 m/s, horizon 1.5 s, time step 0.5 s. The expected velocities come from
     /// RVO2, the code that the authors of ORCA published (`pyrvo` 0.4.3).
@@ -191,16 +235,8 @@ mod tests {
     #[test]
     fn velocities_are_those_of_the_published_code() {
         for (velocity, preferred, others, expected) in RVO2 {
-            let me = Mover { velocity: Vector::from(velocity), ..mover(0, [10.0, 10.0], preferred) };
-            let neighbour = |(offset, velocity): &([f32; 2], [f32; 2])| Neighbour {
-                offset: Vector::from(*offset),
-                velocity: Vector::from(*velocity),
-                apart: 0.8,
-                share: 0.5,
-                encounter: Encounter::Other,
-            };
-            let neighbours: Vec<Neighbour> = others.iter().map(neighbour).collect();
-            let found = avoiding_velocity(&me, &neighbours, &mut Vec::new(), false);
+            let others: Vec<(Moving, f32)> = others.iter().map(|other| (*other, 0.5)).collect();
+            let found = taken([velocity, preferred], 2.0, false, &others);
             assert!((found - Vector::from(expected)).length() < 1e-3, "{found} instead of {expected:?}");
         }
     }
