@@ -3,7 +3,7 @@
 >>> import usar
 >>> paper = usar.Scenario.builtin("paper").set(duration_s=60)
 >>> usar.run(paper, policy="DIS", seed=1)
-<usar.Record of DIS, seed 1: 0 rescued, completed>
+<usar.Record of DIS, seed 1: 20 rescued, completed>
 
 A policy is a name as on the command line, a function from a question to groups, or an object with a
 method `decide`. The page docs/python.md is a tutorial.
