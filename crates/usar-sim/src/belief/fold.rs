@@ -110,7 +110,9 @@ impl Belief {
 
     /// A hash of the whole belief.
     pub(super) fn digest(&self) -> u128 {
-        *self.digest.get_or_init(|| part(self))
+        let Self { debris, zones, rescuees, wrecks, tasks, pool, news, maps: _, digest } = self;
+        let rescuees = || rescuees.digest(KnownRescuee::words);
+        *digest.get_or_init(|| part(&(debris, zones, rescuees(), wrecks, tasks, pool, news)))
     }
 
     fn take(&mut self, report: &Report) -> bool {

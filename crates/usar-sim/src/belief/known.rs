@@ -50,6 +50,14 @@ pub struct KnownRescuee {
     pub sd_m: f32,
 }
 
+impl KnownRescuee {
+    /// All that is known of it, to be hashed. No place has these greatest words.
+    pub(super) fn words(&self) -> [u32; 5] {
+        let [x, y] = self.waits_at.map_or([u32::MAX; 2], |at| at.to_array().map(f32::to_bits));
+        [x, y, self.at_step as u32, (self.at_step >> u32::BITS) as u32, self.sd_m.to_bits()]
+    }
+}
+
 /// A robot that has stopped for good, as reported.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct KnownWreck {

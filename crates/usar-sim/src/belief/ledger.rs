@@ -1,8 +1,11 @@
 //! The ledger of the base: what it can witness of each round, and what the robots say that it cost them.
 
+use std::sync::OnceLock;
+
 use rne_core::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 use serde::{Deserialize, Serialize};
 
+use crate::hash::part;
 use crate::ids::RobotId;
 use crate::robot::Robot;
 use crate::scenario::CostUnit;
@@ -19,6 +22,9 @@ pub struct Ledger {
     spent: Vec<[f64; 2]>,
     /// The same when the last round began.
     spent_at_start: Vec<[f64; 2]>,
+    /// The hash of all rounds but the last, which alone can change.
+    #[serde(skip)]
+    digest: OnceLock<u128>,
 }
 
 impl Ledger {
@@ -30,12 +36,21 @@ impl Ledger {
             start_s: 0.0,
             spent: nothing.clone(),
             spent_at_start: nothing,
+            digest: OnceLock::new(),
         }
     }
 
     /// The rounds that are over.
     pub fn rounds(&self) -> &[RoundOutcome] {
         &self.rounds[..self.rounds.len() - usize::from(self.is_open)]
+    }
+
+    /// The ledger as it counts in the hash chain.
+    pub(super) fn to_hash(&self) -> impl Serialize + '_ {
+        let Self { rounds, is_open, start_s, spent, spent_at_start, digest } = self;
+        let before = rounds.len().saturating_sub(1);
+        let digest = *digest.get_or_init(|| part(&&rounds[..before]));
+        (digest, &rounds[before..], is_open, start_s, spent, spent_at_start)
     }
 
     /// Notes the levels that a robot reports after others.
@@ -56,6 +71,7 @@ impl Ledger {
             members: ids.iter().map(member).collect(),
         };
         let groups = (0..).zip(groups).map(group).collect();
+        self.digest.take();
         self.rounds.push(RoundOutcome { round, duration_s: 0.0, groups });
         (self.is_open, self.start_s) = (true, time_s);
         self.spent_at_start.clone_from(&self.spent);

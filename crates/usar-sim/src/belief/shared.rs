@@ -108,7 +108,7 @@ impl Beliefs {
     pub(crate) fn to_hash(&self) -> impl Serialize + '_ {
         let Self { field, home, team, said_at, ledger } = self;
         let field: Vec<u128> = field.iter().map(Belief::digest).collect();
-        (field, home.digest(), team, said_at, ledger)
+        (field, home.digest(), team, said_at, ledger.to_hash())
     }
 
     /// The team at home hears all that was heard in the field.

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::hash::part_of_many;
+
 /// Things by number. Numbers may have gaps; the table grows to the largest number.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Table<T>(Vec<Option<T>>);
@@ -21,6 +23,11 @@ impl<T> Table<T> {
     /// All things with their numbers, in order.
     pub fn iter(&self) -> impl Iterator<Item = (u32, &T)> {
         (0..).zip(&self.0).filter_map(|(number, thing)| Some((number, thing.as_ref()?)))
+    }
+
+    /// A hash of all things, each as these words.
+    pub(super) fn digest<const WORDS: usize>(&self, words: impl Fn(&T) -> [u32; WORDS]) -> u128 {
+        part_of_many(self.0.iter().map(|thing| thing.as_ref().map_or([u32::MAX; WORDS], &words)))
     }
 
     pub(super) fn set(&mut self, number: usize, thing: T) {

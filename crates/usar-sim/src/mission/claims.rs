@@ -29,8 +29,9 @@ impl Claims {
     }
 
     /// The claims without what is given up: a part of the hash chain.
-    pub(crate) fn held(&self) -> impl Serialize + '_ {
-        (&self.by, self.changes)
+    pub(crate) fn held(&self) -> impl Serialize + use<> {
+        let claimed = self.by.iter().enumerate().filter_map(|(rescuee, by)| Some((rescuee, (*by)?)));
+        (claimed.collect::<SmallVec<[_; 16]>>(), self.changes)
     }
 
     /// Whether a rescuee's group gave up on it in this round, because it knows no way there or came no

@@ -68,6 +68,11 @@ impl Navigator {
         Self { travellers: vec![Traveller::to(None); robots], trails: vec![Trail::default(); robots] }
     }
 
+    /// The journeys as they count in the hash chain.
+    pub(crate) fn to_hash(&self) -> impl Serialize + '_ {
+        (&self.travellers, self.trails.iter().map(Trail::digest).collect::<Vec<_>>())
+    }
+
     /// The journey of one robot.
     pub fn traveller(&self, robot: RobotId) -> &Traveller {
         &self.travellers[robot.index()]

@@ -4,6 +4,7 @@ use std::ops::{Deref, DerefMut};
 
 use serde::{Deserialize, Serialize};
 
+use crate::hash::part_of_many;
 use crate::ids::RobotId;
 use crate::model::RescueeModel;
 
@@ -18,6 +19,17 @@ pub enum RescueeState {
     Rescued,
     /// Not there: it appears later, or disappeared when its task ended.
     Absent,
+}
+
+impl RescueeState {
+    fn word(self) -> u32 {
+        match self {
+            Self::Waiting => 0,
+            Self::Rescued => 1,
+            Self::Absent => 2,
+            Self::OnBoard(robot) => 3 + robot.0,
+        }
+    }
 }
 
 /// A person or valuable to rescue. It dereferences to its fixed properties, the [`RescueeModel`].
@@ -52,6 +64,11 @@ impl Rescuees {
             |model: &RescueeModel| if model.is_later { RescueeState::Absent } else { RescueeState::Waiting };
         let rescuee = |model: &RescueeModel| Rescuee { model: *model, state: state(model) };
         Self { list: models.iter().map(rescuee).collect(), changes: 0 }
+    }
+
+    /// A hash of the states of all rescuees.
+    pub(crate) fn digest(&self) -> u128 {
+        part_of_many(self.list.iter().map(|rescuee| [rescuee.state.word()]))
     }
 
     /// Number of mutable accesses to the list.
