@@ -1,8 +1,6 @@
 //! The sensor of debris: pieces within the sensing range or in touch, and places from which a piece was taken
 //! away.
 
-use smallvec::SmallVec;
-
 use super::View;
 use crate::belief::{Belief, KnownDebris};
 use crate::report::{Report, Statement};
@@ -16,8 +14,8 @@ pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
         let heard = belief.debris.get(number).map(|known| known.at_step);
         debris[number].since.last().is_some_and(|since| heard.is_none_or(|heard| heard < *since))
     };
-    let near = view.world.debris_places.near(at, range).into_iter();
-    let mut near: SmallVec<[usize; 64]> = near.filter(|number| has_changed(*number)).collect();
+    let mut near = view.world.debris_places.near(at, range);
+    near.retain(|number| has_changed(*number));
     near.sort_unstable();
     for number in near {
         if debris[number].distance_to(at) <= range {
