@@ -105,3 +105,16 @@ pub(crate) fn part_of_many<const WORDS: usize>(things: impl Iterator<Item = [u32
     let things: Vec<_> = things.map(|words| words.map(u32::to_le_bytes)).collect();
     xxh3_128(things.as_flattened().as_flattened())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_any_length_is_hashed_whole() {
+        for length in [0, LEAST_BYTES - 2, LEAST_BYTES - 1, 5 * LEAST_BYTES, 10] {
+            let value: Vec<u8> = (0..length).map(|at| at as u8).collect();
+            assert_eq!(part(&value), xxh3_128(&postcard::to_stdvec(&value).unwrap()), "{length} bytes");
+        }
+    }
+}
