@@ -120,6 +120,26 @@ fn costs_per_step_under_another_step_are_told() {
 }
 
 #[test]
+fn a_control_period_that_is_not_kept_to_is_told() {
+    let told = |changes: &[(&str, &str)]| {
+        let mut file = (*paper()).clone();
+        changes.iter().for_each(|(field, value)| file.set(field, value).unwrap());
+        let warnings = Scenario::try_from(file).unwrap().warnings(&paper_text());
+        warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!(told(&[("control_period_s", "0.02")]), "");
+    assert_eq!(told(&[("roles.observer.speed_mps", "5")]), "", "nobody gave a period");
+    for (given, kept) in [("0.5", "0.1000"), ("0.05", "0.0400"), ("0.01", "0.0200")] {
+        let told = told(&[("control_period_s", given)]);
+        let expected =
+            format!("control_period_s is not kept to: robots decide every {kept} s, found {given}");
+        assert!(told.contains(&expected), "{told}");
+    }
+    let coarse = told(&[("fidelity", "Coarse"), ("control_period_s", "0.04")]);
+    assert!(coarse.contains("every 0.0500 s, found 0.04"), "{coarse}");
+}
+
+#[test]
 fn a_team_without_a_guide_and_doors_too_narrow_for_all_are_told() {
     let told = |change: &dyn Fn(&mut ScenarioFile)| {
         let mut file = (*paper()).clone();

@@ -19,7 +19,7 @@ ron_tree::limits! {
     TRIALS: "trials" = 1, 1_000_000;
     /// Seeds that are listed.
     SEEDS: "seeds" = 1, 100_000;
-    /// Bodies times steps of one trial, about as many as take ten minutes to simulate; more needs
+    /// Bodies times steps of one trial, about as many as take one or two minutes to simulate; more needs
     /// `--allow-expensive`.
     TRIAL_WORK: "a trial" = 0, 1e9;
     /// Bodies times steps of all trials of a sweep; more needs `--allow-expensive`.

@@ -122,7 +122,11 @@ pub fn strange_files(folder: &mut Folder) -> Result<Vec<String>, Failure> {
     let name = |file: &str| path.join(file).display().to_string();
     let mut strange: Vec<String> = broken_files(&path, &manifest)
         .iter()
-        .map(|file| format!("{}: does not have the checksum of the manifest", name(file)))
+        .map(|file| {
+            let is_there = path.join(file).exists();
+            let what = if is_there { "does not have the checksum of the manifest" } else { "is missing" };
+            format!("{}: {what}", name(file))
+        })
         .collect();
     let given = path.join(GIVEN);
     strange.extend(check_form(&folder.experiment().given, &given).err().map(|failure| failure.to_string()));

@@ -45,7 +45,7 @@ pub struct ScenarioFile {
     /// Length of a simulation step, in seconds.
     pub dt_s: f64,
     /// Robots look around and choose their velocities once in this time, in seconds, rounded down to whole
-    /// steps; robots that would go farther than 0.25 m in it do so more often.
+    /// steps, at least one; a team in which a robot would go farther than 0.25 m in it does so more often.
     #[serde(default = "super::defaults::control_period_s")]
     pub control_period_s: f64,
     /// How finely a trial is simulated: as written, or in longer steps at the same costs.

@@ -4,8 +4,9 @@
 use ron_tree::Node;
 
 use super::Scenario;
+use super::defaults::control_period_s;
 use super::error::Problem;
-use super::fidelity::USUAL_STEP_S;
+use super::fidelity::{CONTROL_WAY_M, USUAL_STEP_S};
 use super::file::{MissionRules, PlanningRules, RoleFile, RoleKind};
 use super::timeline::{Happening, Moment};
 
@@ -44,6 +45,7 @@ impl Scenario {
         self.without_effect(&mut warnings);
         self.again(&mut warnings);
         self.paid_by_the_step(&mut warnings);
+        self.decides_at_other_times(&mut warnings);
         for problem in &mut warnings {
             problem.line = tree.as_ref().and_then(|tree| tree.line(&problem.field));
         }
@@ -71,6 +73,24 @@ impl Scenario {
                     ..Problem::default()
                 });
             }
+        }
+    }
+
+    /// A given control period that robots do not keep to.
+    fn decides_at_other_times(&self, warnings: &mut Vec<Problem>) {
+        let (given, step_s) = (self.control_period_s, self.step_s());
+        let kept = self.control_steps() as f64 * step_s;
+        if [control_period_s(), kept].iter().all(|usual| (given - usual).abs() > 1e-9) {
+            warnings.push(Problem {
+                field: "control_period_s".to_owned(),
+                rule: format!("is not kept to: robots decide every {kept:.4} s"),
+                found: given.to_string(),
+                hint: format!(
+                    "it is rounded down to whole steps of {step_s} s, at least one, and nobody goes farther than \
+                     {CONTROL_WAY_M} m between two decisions"
+                ),
+                ..Problem::default()
+            });
         }
     }
 
