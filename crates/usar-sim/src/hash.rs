@@ -1,8 +1,8 @@
 //! The hash chain over the whole state of a trial: equal chains, equal trials, step by step. What only
 //! listens, metrics and decisions, is no part of it: a new counter changes no hash.
 //!
-//! Every [`PERIOD_S`] seconds and at the end, each part of the state is written as bytes (postcard) and
-//! hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link. Each
+//! Every [`PERIOD_S`] seconds and at the end, each part of the state is written as bytes (postcard, or words)
+//! and hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link. Each
 //! link also keeps shortened digests of the parts, which show in which part two chains differ.
 
 use std::cell::Cell;
@@ -100,7 +100,7 @@ pub(crate) fn part(value: &impl Serialize) -> u128 {
     hash
 }
 
-/// Hash of many small things, each as a few words: a quarter of the work of [`part`].
+/// Hash of many small things, each as a few words of fixed width: less work than [`part`].
 pub(crate) fn part_of_many<const WORDS: usize>(things: impl Iterator<Item = [u32; WORDS]>) -> u128 {
     let things: Vec<_> = things.map(|words| words.map(u32::to_le_bytes)).collect();
     xxh3_128(things.as_flattened().as_flattened())

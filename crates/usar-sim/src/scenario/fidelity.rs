@@ -22,9 +22,9 @@ pub enum Fidelity {
     /// In steps of `dt_s`. The default.
     #[default]
     AsWritten,
-    /// In steps of 0.05 s, whatever `dt_s` is, for 1.1 to 1.3 times as many trials in the same time. In a second
-    /// everything costs the same as in steps of `dt_s`: each cost `per_step` grows with the step, and the
-    /// `deadlock_steps` last as long.
+    /// In steps of 0.05 s, whatever `dt_s` is, for 1.1 to 1.3 times as many trials in the same time. In a
+    /// second everything costs the same as in steps of `dt_s`: each cost `per_step` grows with the step, and
+    /// the `deadlock_steps` last as long.
     Coarse,
 }
 

@@ -86,8 +86,8 @@ impl Scenario {
                 rule: format!("is not kept to: robots decide every {kept:.4} s"),
                 found: given.to_string(),
                 hint: format!(
-                    "it is rounded down to whole steps of {step_s} s, at least one, and nobody goes farther than \
-                     {CONTROL_WAY_M} m between two decisions"
+                    "it is rounded down to whole steps of {step_s} s, at least one, and nobody goes farther \
+                     than {CONTROL_WAY_M} m between two decisions"
                 ),
                 ..Problem::default()
             });
