@@ -19,7 +19,7 @@ def rows(path):
 
 
 def check_log():
-    robots = {(round(float(row["time_s"]) * 1e9), int(row["robot"])): row for row in rows(place / "csv/robots.csv")}
+    robots = {(round(float(row["time_s"]) * 1e9), int(row["robot"])): row for row in rows(place / "trial-robots.csv")}
     topics = {}
     decoders = DecoderFactory()
     with open(place / "trial.mcap", "rb") as log:
@@ -40,7 +40,7 @@ def check_log():
                 assert told["energy_percent"] == float(row["energy_percent"]), row
                 assert told["activity"] == row["activity"], row
     assert sum(count for topic, count in topics.items() if topic.startswith("/robot/")) == len(robots)
-    assert topics["/events"] == len(rows(place / "csv/events.csv")), topics
+    assert topics["/events"] == len(rows(place / "trial-events.csv")), topics
     assert {"/world", "/debris", "/radiation", "/robots", "/positions", "/rescuees", "/team"} <= topics.keys(), topics
     return sum(topics.values())
 
@@ -66,8 +66,7 @@ def check_table(path, kind):
 
 
 messages = check_log()
-tables = [(path, place / "csv" / f"{path.stem}.csv") for path in (place / "parquet").glob("*.parquet")]
-tables += [(path, path.with_suffix(".csv")) for path in (place / "sweep").glob("*.parquet")]
+tables = [(path, path.with_suffix(".csv")) for path in [*place.glob("trial-*.parquet"), *place.glob("sweep/*.parquet")]]
 assert len(tables) == 11, tables
 count = sum(check_table(path, kind) for path, kind in tables)
 print(f"exports: {messages} messages and {count} rows of {len(tables)} Parquet files are what the CSV tables have")

@@ -9,7 +9,7 @@ use experiments::run::{Limits, Run, TrialKey, run_all};
 use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{Asked, Question, Session};
+use teaming::{Asked, Question, Session};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Ask, AssignError, Simulation};

@@ -13,11 +13,19 @@ fn crates() -> Vec<String> {
     let workspace = text("Cargo.toml");
     let (_, members) = workspace.split_once("members = [").unwrap();
     let (members, _) = members.split_once(']').unwrap();
-    members.split('"').filter_map(|member| member.strip_prefix("crates/")).map(str::to_owned).collect()
+    let folder =
+        |member: &str| member.strip_prefix("crates/").or(member.strip_prefix("studies/")).map(str::to_owned);
+    members.split('"').filter_map(folder).collect()
+}
+
+/// The folder of a crate: studies have one of their own.
+fn folder(name: &str) -> String {
+    let room = if root().join("studies").join(name).exists() { "studies" } else { "crates" };
+    format!("{room}/{name}")
 }
 
 /// The crates that know a paper, or run as programs.
-const APART: [&str; 3] = ["study-yang2021", "xtask", "usar"];
+const APART: [&str; 4] = ["xtask", "usar", "bench", "yang2021"];
 
 /// What is needed to show something to people, and the crates that may need it.
 const SCREEN: [(&str, &[&str]); 12] = [
@@ -26,11 +34,11 @@ const SCREEN: [(&str, &[&str]); 12] = [
     ("svg2pdf", &["pictures"]),
     ("gif", &["pictures"]),
     ("kuva", &["reports"]),
-    ("askama", &["reports", "study-yang2021"]),
-    ("comfy-table", &["reports", "study-yang2021"]),
-    ("clap", &["usar", "xtask"]),
+    ("askama", &["reports", "yang2021"]),
+    ("comfy-table", &["tables"]),
+    ("clap", &["usar", "xtask", "bench", "yang2021"]),
     ("clap_complete", &["usar"]),
-    ("clap_mangen", &["usar"]),
+    ("clap_mangen", &["xtask"]),
     ("ctrlc", &["usar"]),
     ("indicatif", &["usar"]),
 ];
@@ -55,24 +63,27 @@ fn dependencies(manifest: &str) -> BTreeSet<&str> {
 fn crates_use_only_those_below_them() {
     let crates = crates();
     for (floor, name) in crates.iter().enumerate() {
-        let manifest = text(&format!("crates/{name}/Cargo.toml"));
+        let manifest = text(&format!("{}/Cargo.toml", folder(name)));
         let used = dependencies(&manifest);
-        let above: Vec<&String> =
-            crates[floor..].iter().filter(|other| used.contains(other.as_str())).collect();
+        // The tests of the program use the tasks, of which one makes pages of its command line.
+        let is_of_tests = |other: &str| (name.as_str(), other) == ("usar", "xtask");
+        let used_above = |other: &&String| used.contains(other.as_str()) && !is_of_tests(other);
+        let above: Vec<&String> = crates[floor..].iter().filter(used_above).collect();
         assert!(above.is_empty(), "crate {name} uses {above:?}, which are not below it");
     }
 }
 
 #[test]
 fn every_crate_has_its_floor_and_is_tested_without_a_name() {
-    let folders = std::fs::read_dir(root().join("crates")).unwrap();
+    let folders = ["crates", "studies"].map(|room| std::fs::read_dir(root().join(room)).unwrap());
+    let folders = folders.into_iter().flatten();
     let found: BTreeSet<String> =
         folders.map(|folder| folder.unwrap().file_name().into_string().unwrap()).collect();
     let crates = crates();
     assert_eq!(found, crates.iter().cloned().collect());
     let workspace = text("Cargo.toml");
     assert!(!workspace.contains("default-members"), "`cargo test` would leave out crates");
-    let runs = |name: &&String| text(&format!("crates/{name}/Cargo.toml")).contains("\ndefault-run = ");
+    let runs = |name: &&String| text(&format!("{}/Cargo.toml", folder(name))).contains("\ndefault-run = ");
     assert_eq!(crates.iter().filter(runs).collect::<Vec<_>>(), ["usar"], "`cargo run` runs one program");
 }
 
@@ -82,8 +93,8 @@ fn every_crate_has_its_floor_and_is_tested_without_a_name() {
 fn the_program_is_known_by_the_sources_that_decide_its_numbers() {
     let build = text("crates/experiments/build.rs");
     let others =
-        ["source-hash", "mrta", "recording", "pictures", "exports", "store", "reports", "xtask", "usar"];
-    let with_own_hashes = ["policies", "programs"];
+        ["source-hash", "recording", "pictures", "exports", "store", "reports", "xtask", "usar", "bench"];
+    let with_own_hashes = ["policies", "programs", "yang2021"];
     let known = |name: &&String| with_own_hashes.contains(&name.as_str());
     for name in crates().iter().filter(|name| !known(name) && !others.contains(&name.as_str())) {
         assert!(build.contains(&format!("\"{name}\"")), "crates/experiments/build.rs leaves out {name}");
@@ -149,8 +160,11 @@ fn no_estimator_names_another_one_and_only_a_control_sees_the_truth() {
 /// An edited policy builds its crate and the command, and nothing between them.
 #[test]
 fn only_the_command_is_built_on_policies() {
-    for name in crates().iter().filter(|name| !["policies", "usar", "xtask"].contains(&name.as_str())) {
-        let manifest = text(&format!("crates/{name}/Cargo.toml"));
+    for name in crates()
+        .iter()
+        .filter(|name| !["policies", "usar", "xtask", "bench", "yang2021"].contains(&name.as_str()))
+    {
+        let manifest = text(&format!("{}/Cargo.toml", folder(name)));
         let dependencies = manifest.split("[dev-dependencies]").next().unwrap_or_default();
         assert!(!dependencies.contains("\npolicies"), "{name} is built on policies");
     }
@@ -159,7 +173,7 @@ fn only_the_command_is_built_on_policies() {
 #[test]
 fn figures_tables_and_the_command_line_are_left_to_their_crates() {
     for name in &crates() {
-        let manifest = text(&format!("crates/{name}/Cargo.toml"));
+        let manifest = text(&format!("{}/Cargo.toml", folder(name)));
         let used = dependencies(&manifest);
         for (library, may) in SCREEN {
             assert!(may.contains(&name.as_str()) || !used.contains(library), "crate {name} uses {library}");
@@ -176,7 +190,7 @@ fn dependencies_of_every_kind_are_found() {
 
 /// The sources of a crate: path from its `src`, and text without tests and comments.
 fn sources(name: &str) -> Vec<(PathBuf, String)> {
-    let src = root().join("crates").join(name).join("src");
+    let src = root().join(folder(name)).join("src");
     let mut sources = Vec::new();
     let mut folders = vec![src.clone()];
     while let Some(folder) = folders.pop() {

@@ -200,5 +200,5 @@ fn distributions_choices_and_scattered_things_have_limits() {
 #[test]
 fn the_page_of_limits_is_made_of_the_constants() {
     let page = std::fs::read_to_string(xtask::limits::path()).unwrap_or_default();
-    assert!(page == xtask::limits::page(), "cargo run --bin xtask -- limits");
+    assert!(page == xtask::limits::page(), "cargo run --bin xtask -- reference");
 }

@@ -1,7 +1,7 @@
-//! The readings of the paper's mission that are options: each does what docs/readings.md says, with every
+//! The readings of the paper's mission that are options: each does what studies/yang2021/docs/readings.md says, with every
 //! invariant checked.
 
-use rne_core::{Asked, Decision, Policy, PolicyError, Question, TaskId};
+use teaming::{Asked, Decision, Policy, PolicyError, Question, TaskId};
 use usar_sim::event::{Event, Place};
 use usar_sim::ids::RobotId;
 use usar_sim::mission::Activity;
@@ -192,7 +192,7 @@ fn tired(changes: &[(&str, &str)]) -> (usize, usize, f64) {
     let record = trial(&scenario, "DIS", 7);
     let least = record.robots.iter().map(|robot| robot.final_energy).fold(f64::INFINITY, f64::min);
     for decided in &record.decisions {
-        let eng = |member: &rne_core::Member| member.needs.values()[3];
+        let eng = |member: &teaming::Member| member.needs.values()[3];
         assert!(decided.question.members.iter().all(|member| eng(member) >= 0.0));
     }
     (turned_back, record.stranded(), least)

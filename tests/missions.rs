@@ -3,7 +3,7 @@
 //! is a change of what people get: it must be meant, and told in the changelog.
 
 use rayon::prelude::*;
-use rne_core::{Account, Asked, RoleId, TaskId};
+use teaming::{Account, Asked, RoleId, TaskId};
 use usar_sim::ids::RobotId;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::scenario::{RoleKind, Scenario};

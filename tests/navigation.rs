@@ -1,14 +1,14 @@
-//! The benchmark of right of way: its files are what its generators write, and its trials are measured.
+//! The benchmark of right of way: its scenarios are those of its problems, and its trials are measured.
 
 use std::collections::BTreeSet;
 
 use usar_sim::scenario::Scenario;
-use xtask::navigation::problems::PROBLEMS;
+use xtask::navigation::problems::problems;
 use xtask::navigation::{FILE_SEED, folder, trial};
 
 #[test]
-fn the_files_are_what_the_generators_write() {
-    for problem in &PROBLEMS {
+fn the_scenarios_are_the_first_seeds_of_the_problems() {
+    for problem in problems() {
         let path = folder().join(format!("{}.ron", problem.name));
         let text =
             std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -16,17 +16,18 @@ fn the_files_are_what_the_generators_write() {
     }
     let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
     let files: BTreeSet<String> = std::fs::read_dir(folder()).unwrap().map(name).collect();
-    let expected: BTreeSet<String> = PROBLEMS.iter().map(|problem| format!("{}.ron", problem.name)).collect();
+    let expected: BTreeSet<String> =
+        problems().iter().map(|problem| format!("{}.ron", problem.name)).collect();
     assert_eq!(files, expected);
 }
 
 #[test]
 fn every_seed_gives_a_world_of_its_own() {
-    for problem in &PROBLEMS {
+    for problem in problems() {
         let texts: BTreeSet<String> = (1..=20).map(|seed| problem.text(seed)).collect();
         assert_eq!(texts.len(), 20, "{}", problem.name);
         for text in &texts {
-            Scenario::parse(text, problem.name.as_ref()).unwrap_or_else(|error| panic!("{error}"));
+            Scenario::parse(text, problem.name.as_str().as_ref()).unwrap_or_else(|error| panic!("{error}"));
         }
     }
 }
@@ -34,8 +35,7 @@ fn every_seed_gives_a_world_of_its_own() {
 #[test]
 fn a_few_robots_arrive_with_little_delay() {
     for name in ["circle_2", "crossing_4", "doorway_2"] {
-        let problem = PROBLEMS.iter().find(|problem| problem.name == name).unwrap();
-        let outcome = trial::run(problem, FILE_SEED, &[]).unwrap();
+        let outcome = outcome(name, FILE_SEED);
         assert_eq!(outcome.robots, outcome.arrived, "{name}");
         assert!((0.99..2.0).contains(&outcome.flow), "{name}: {}", outcome.flow);
         assert!(outcome.time_s < outcome.limit_s, "{name}");
@@ -43,8 +43,8 @@ fn a_few_robots_arrive_with_little_delay() {
 }
 
 fn outcome(name: &str, seed: u64) -> trial::Outcome {
-    let problem = PROBLEMS.iter().find(|problem| problem.name == name).unwrap();
-    trial::run(problem, seed, &[]).unwrap()
+    let problem = problems().into_iter().find(|problem| problem.name == name).unwrap();
+    trial::run(&problem, seed, &[]).unwrap()
 }
 
 #[test]

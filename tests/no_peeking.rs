@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use rne_core::Asked;
+use teaming::Asked;
 use usar_sim::event::Event;
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
@@ -15,7 +15,7 @@ use crate::support::{paper, paper_with, policy};
 
 /// Rescuees that their group believes to wait and that no robot claims.
 fn believed(trial: &Simulation) -> Vec<RescueeId> {
-    let of_task = |task: rne_core::TaskId| {
+    let of_task = |task: teaming::TaskId| {
         let known = &trial.beliefs_of(Some(task)).next().unwrap().rescuees;
         let own = trial.model().tasks[task.index()].rescuees.clone();
         own.filter(|id| known.get(*id).is_some_and(|known| known.waits_at.is_some()))

@@ -76,3 +76,26 @@ fn only_the_door_of_the_page_is_unsafe() {
     }
     assert!(text("lab/Cargo.toml").contains("unsafe_code = \"deny\""));
 }
+
+/// A sweep, its comparison and its report need no renderer and no format of other programs, and the first build has none.
+#[test]
+fn the_first_build_leaves_out_what_the_first_result_does_not_need() {
+    let tree = [
+        "tree",
+        "--locked",
+        "--offline",
+        "--package=usar",
+        "--edges=normal",
+        "--prefix=none",
+        "--format={p}",
+    ];
+    let cargo = std::env::var("CARGO").unwrap_or("cargo".to_owned());
+    let tree = std::process::Command::new(cargo).args(tree).current_dir(root()).output().unwrap();
+    assert!(tree.status.success(), "{}", String::from_utf8_lossy(&tree.stderr));
+    let tree = String::from_utf8(tree.stdout).unwrap();
+    let names: BTreeSet<&str> = tree.lines().filter_map(|line| line.split(' ').next()).collect();
+    assert!(names.contains("usar-sim") && names.len() < 200, "{}", names.len());
+    for name in ["usvg", "resvg", "svg2pdf", "gif", "parquet", "mcap", "foxglove"] {
+        assert!(!names.contains(name), "{name}");
+    }
+}

@@ -15,8 +15,8 @@ fn in_30_random_worlds_nobody_stands_still_for_good_and_no_invariant_is_violated
             let mut file = (*world(seed)).clone();
             file.duration_s = 100.0; // the recipe runs them to their end
             let scenario = Scenario::try_from(file).unwrap();
-            let journeys =
-                Journeys::run(&scenario, seed).unwrap_or_else(|reason| panic!("world {seed}: {reason}"));
+            let journeys = Journeys::run(&scenario, "RANDOM", seed)
+                .unwrap_or_else(|reason| panic!("world {seed}: {reason}"));
             (seed, journeys)
         })
         .collect();
@@ -49,6 +49,6 @@ fn trials_are_the_same_with_the_engine_at_rest_in_quiet_steps_and_always_on() {
 #[test]
 fn no_robot_is_faster_than_its_top_speed() {
     let file = ScenarioFile { duration_s: 630.0, ..(*rooms::rooms(521)).clone() };
-    let journeys = Journeys::run(&Scenario::try_from(file).unwrap(), 521);
+    let journeys = Journeys::run(&Scenario::try_from(file).unwrap(), "RANDOM", 521);
     assert!(journeys.is_ok(), "{}", journeys.err().unwrap());
 }

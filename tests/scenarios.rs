@@ -113,10 +113,6 @@ fn costs_per_step_under_another_step_are_told() {
         "{told}"
     );
     assert!(told.contains("costs.hp.per_step"), "{told}");
-    let mut coarse = (*paper()).clone();
-    coarse.set("fidelity", "Coarse").unwrap();
-    let coarse = Scenario::try_from(coarse).unwrap();
-    assert!(coarse.warnings(&paper_text()).is_empty(), "the longer step changes no cost");
 }
 
 #[test]
@@ -135,8 +131,24 @@ fn a_control_period_that_is_not_kept_to_is_told() {
             format!("control_period_s is not kept to: robots decide every {kept} s, found {given}");
         assert!(told.contains(&expected), "{told}");
     }
-    let coarse = told(&[("fidelity", "Coarse"), ("control_period_s", "0.04")]);
-    assert!(coarse.contains("every 0.0500 s, found 0.04"), "{coarse}");
+    let told = told(&[("fidelity", "AsWritten")]);
+    assert!(told.starts_with("fidelity has no effect any more, found AsWritten; all trials"), "{told}");
+}
+
+#[test]
+fn a_medium_over_which_reports_come_too_late_is_told() {
+    let told = |medium: &str| {
+        let mut file = (*paper()).clone();
+        file.set("reports", "(every_s: 1.0)").unwrap();
+        file.set("medium", medium).unwrap();
+        let warnings = Scenario::try_from(file).unwrap().warnings(&paper_text());
+        warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+    };
+    assert_eq!((told("(kbps: 6.2)"), told("(delay_s: 10.0)")), (String::new(), String::new()));
+    let slow = told("(kbps: 0.01)"); // twelve robots, 64 bytes each, every second: 6.144 kbit/s
+    assert!(slow.contains("medium.kbps is 614.4 times too slow for the reports of all robots"), "{slow}");
+    let late = told("(delay_s: 3600.0)");
+    assert!(late.contains("medium.delay_s is as long as the trial or longer"), "{late}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod support;
 
 mod broken;
 mod conservation;
+mod damaged;
 mod determinism;
 mod documents;
 mod files;

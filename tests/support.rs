@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use rne_core::Session;
+use teaming::Session;
 use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::record::TrialRecord;

@@ -5,7 +5,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;
-use rne_core::{Asked, Assignment, Question};
+use teaming::{Asked, Assignment, Question};
 use usar_sim::hash::PARTS;
 use usar_sim::record::TrialRecord;
 use usar_sim::scenario::Scenario;

@@ -7,17 +7,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The crates that decide the numbers of every trial, or of a study.
-const DECIDING: [&str; 8] = [
-    "ron-tree",
-    "rne-core",
-    "frozen-physics",
-    "usar-sim",
-    "statistics",
-    "tables",
-    "experiments",
-    "study-yang2021",
-];
+/// The crates that decide the numbers of every trial. Studies hash their own sources.
+const DECIDING: [&str; 8] =
+    ["ron-tree", "rne-core", "teaming", "frozen-physics", "usar-sim", "statistics", "tables", "experiments"];
 
 fn main() {
     let root = Path::new("../..");

@@ -39,7 +39,7 @@ struct Offer {
 /// The policies of the program.
 fn policies() -> Vec<Offer> {
     let registry = ::policies::standard();
-    let offer = |kind: &rne_core::PolicyKind| Offer {
+    let offer = |kind: &teaming::PolicyKind| Offer {
         name: kind.name.clone(),
         about: kind.about.clone(),
         options: kind.defaults.clone(),

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use std::rc::Rc;
 
 use recording::{Options, Recorder};
-use rne_core::{Assignment, Decision, Question, Session, TrialStart};
 use serde::{Deserialize, Serialize};
+use teaming::{Assignment, Decision, Question, Session, TrialStart};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 

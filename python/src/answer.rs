@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use pythonize::pythonize;
-use rne_core::{Assignment, Question};
+use teaming::{Assignment, Question};
 
 /// A question as a dict: what docs/schemas/question.schema.json describes, without the truth.
 pub fn asked<'py>(py: Python<'py>, question: &Question) -> PyResult<Bound<'py, PyAny>> {

@@ -2,8 +2,9 @@
 
 use experiments::Failure;
 use experiments::experiment::SweepFileError;
-use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pythonize::PythonizeError;
 use usar_sim::scenario::{Location, ScenarioError as Unusable};
 
 pyo3::create_exception!(usar, ScenarioError, PyValueError, "A scenario or a sweep file that cannot be used.");
@@ -45,4 +46,11 @@ pub fn unanswered(py: Python<'_>, message: String, [seed, round]: [Option<u64>; 
     let value = raised.value(py);
     let set = value.setattr("policy", policy).and_then(|()| value.setattr("seed", seed));
     set.and_then(|()| value.setattr("round", round)).map_or_else(|error| error, |()| raised)
+}
+
+/// Raises that a question cannot be read: a `ValueError` where its values are wrong.
+pub fn unread(py: Python<'_>, error: PythonizeError) -> PyErr {
+    let raised = PyErr::from(error);
+    let is_bare = raised.get_type(py).is(py.get_type::<PyException>());
+    if is_bare { PyValueError::new_err(format!("the question: {}", raised.value(py))) } else { raised }
 }

@@ -20,7 +20,14 @@ use pyo3::prelude::*;
 /// Runs the command `usar` with these words, the program first, and returns its exit status.
 #[pyfunction]
 fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
-    py.detach(|| usar::run(words, policies::standard()))
+    let guard = policy::guard_words(py);
+    py.detach(|| usar::run(&words, policies::standard(), guard))
+}
+
+/// Guards a program of a policy: the number of the process that started it, and the words of the program.
+#[pyfunction]
+fn guard(py: Python<'_>, words: Vec<OsString>) -> u8 {
+    py.detach(|| programs::guard(&words))
 }
 
 /// The module.
@@ -28,8 +35,6 @@ fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
 mod _usar {
     use pyo3::prelude::*;
 
-    #[pymodule_export]
-    use super::command;
     #[pymodule_export]
     use super::errors::{PolicyError, ScenarioError};
     #[pymodule_export]
@@ -42,6 +47,8 @@ mod _usar {
     use super::sweep::sweep;
     #[pymodule_export]
     use super::trial::{group, run};
+    #[pymodule_export]
+    use super::{command, guard};
 
     #[pymodule_init]
     #[expect(clippy::unnecessary_wraps, reason = "initialisers may fail")]

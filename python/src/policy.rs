@@ -1,12 +1,15 @@
 //! Policies written in Python.
 
+use std::ffi::OsString;
+use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use experiments::experiment::{PolicySpec, with_oracle};
+use programs::{Consent, Launch, Unknown};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
-use rne_core::{
+use teaming::{
     Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Question, Registry, Session,
     TrialStart,
 };
@@ -36,6 +39,30 @@ pub enum Given {
 /// A policy that stands in a call.
 pub fn given(policy: &Bound<'_, PyAny>) -> PyResult<Given> {
     policy.py().import("usar._policies")?.call_method1("given", (policy,))?.extract()
+}
+
+/// Starts this module as a guard, by its file.
+const GUARD: &str = "import importlib.machinery, importlib.util, sys
+loader = importlib.machinery.ExtensionFileLoader('_usar', sys.argv[1])
+module = importlib.util.module_from_spec(importlib.util.spec_from_loader('_usar', loader))
+loader.exec_module(module)
+sys.exit(module.guard(sys.argv[2:]))";
+
+/// The words that start this module as a guard of a program; none where Python does not know its own file.
+pub fn guard_words(py: Python<'_>) -> Vec<OsString> {
+    let of = |module: &str, name: &str| py.import(module)?.getattr(name)?.extract::<OsString>();
+    match (of("sys", "executable"), of("usar._usar", "__file__")) {
+        (Ok(python), Ok(own)) if !python.is_empty() => {
+            let options = ["-I", "-S", "-c", GUARD].map(OsString::from);
+            std::iter::once(python).chain(options).chain([own]).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Shows a line on stderr, where there is one.
+fn tell(line: &str) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// The first exception that a policy has raised in a run.
@@ -76,11 +103,21 @@ pub struct Policies {
 }
 
 impl Policies {
-    /// Takes the policies of a call. An exception of one of them ends its work.
-    pub fn of(given: Vec<Given>, call: &Call) -> PyResult<Self> {
+    /// Takes the policies of a call. An exception of one of them ends its work. Programs may be started whose
+    /// commands stand in the call, and others with `allow_programs`.
+    pub fn of(py: Python<'_>, given: Vec<Given>, call: &Call, allow_programs: bool) -> PyResult<Self> {
         let mut registry = with_oracle(policies::standard());
-        let taken = |error: rne_core::RegistryError| PyValueError::new_err(error.to_string());
-        registry.add(programs::kind(&call.stop, || ())).map_err(taken)?;
+        let taken = |error: teaming::RegistryError| PyValueError::new_err(error.to_string());
+        let typed = given.iter().filter_map(|policy| match policy {
+            Given::Written(text) => Some(text.as_str()),
+            Given::Own { .. } => None,
+        });
+        let refused = Unknown::Refuse("allow_programs=True allows it");
+        let unknown = if allow_programs { Unknown::Allow } else { refused };
+        let consent = Consent::new(typed, unknown, tell, &call.stop);
+        let (stop, guard) = (Arc::clone(&call.stop), guard_words(py));
+        let launch = Launch { stop, begin: || (), longest: None, consent, guard };
+        registry.add(programs::kind(launch)).map_err(taken)?;
         let raised = Raised::default();
         let mut written = Vec::new();
         for policy in given {

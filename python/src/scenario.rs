@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRecursionError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use ron_tree::limits::{NESTING, TEXT_BYTES};
 use usar_sim::scenario::{Problems, Scenario as Checked, ScenarioError, ScenarioFile};
 
 use crate::errors::unusable;
@@ -49,8 +50,8 @@ impl Scenario {
         Self::load(py, usar::carried(name).ok_or_else(known)?)
     }
 
-    /// The scenario with fields set, each by its path. Numbers, booleans, lists and None are those of Python; a
-    /// text is RON, as after `--set`, so that a text in RON has quotes of its own.
+    /// The scenario with fields set, each by its path. Numbers, booleans, lists and None are those of Python;
+    /// a text is RON, as after `--set`, so that a text in RON has quotes of its own.
     ///
     /// >>> from usar import Scenario
     /// >>> Scenario.builtin("paper").set(duration_s=60, **{"mission.belief_sharing": "WithNobody"})
@@ -89,7 +90,7 @@ impl Scenario {
     /// Time of a step, in seconds.
     #[getter]
     fn step_s(&self) -> f64 {
-        self.it.step_s()
+        self.it.dt_s
     }
 
     /// Length and width of the arena, in metres.
@@ -126,27 +127,42 @@ impl Scenario {
 /// A value of Python in RON. A text is taken as it is.
 #[pyfunction]
 pub fn ron(value: &Bound<'_, PyAny>) -> PyResult<String> {
-    let listed = |entries: PyResult<Vec<String>>| Ok(format!("[{}]", entries?.join(", ")));
+    let mut text = String::new();
+    write(&mut text, value, 0)?;
+    Ok(text)
+}
+
+/// Writes a value that is within `depth` lists. A list may contain itself, and the same list many times.
+fn write(text: &mut String, value: &Bound<'_, PyAny>, depth: usize) -> PyResult<()> {
+    if depth > NESTING.count() {
+        let message = format!("a value must have at most {} lists within one another", NESTING.count());
+        return Err(PyRecursionError::new_err(message));
+    }
+    if text.len() > TEXT_BYTES.count() {
+        let message = format!("a value must have at most {} bytes in RON", TEXT_BYTES.count());
+        return Err(PyValueError::new_err(message));
+    }
     if value.is_none() {
-        return Ok("None".to_owned());
-    }
-    if let Ok(is) = value.cast::<PyBool>() {
-        return Ok(is.is_true().to_string());
-    }
-    if value.is_instance_of::<PyString>()
+        text.push_str("None");
+    } else if let Ok(is) = value.cast::<PyBool>() {
+        text.push_str(if is.is_true() { "true" } else { "false" });
+    } else if value.is_instance_of::<PyString>()
         || value.is_instance_of::<PyInt>()
         || value.is_instance_of::<PyFloat>()
     {
-        return Ok(value.str()?.to_string());
+        text.push_str(&value.str()?.to_string());
+    } else if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
+        let [open, close] = if value.is_instance_of::<PyList>() { ['[', ']'] } else { ['(', ')'] };
+        text.push(open);
+        for (i, entry) in value.try_iter()?.enumerate() {
+            text.push_str(if i > 0 { ", " } else { "" });
+            write(text, &entry?, depth + 1)?;
+        }
+        text.push(close);
+    } else {
+        let number: PyResult<f64> = value.extract(); // those of numpy
+        let wrong = "a value must be a number, a boolean, a text in RON, a list or None";
+        text.push_str(&number.map_err(|_| PyTypeError::new_err(wrong))?.to_string());
     }
-    if let Ok(list) = value.cast::<PyList>() {
-        return listed(list.iter().map(|entry| ron(&entry)).collect());
-    }
-    if let Ok(tuple) = value.cast::<PyTuple>() {
-        let entries = tuple.iter().map(|entry| ron(&entry)).collect::<PyResult<Vec<_>>>()?;
-        return Ok(format!("({})", entries.join(", ")));
-    }
-    let wrong = || PyTypeError::new_err("a value must be a number, a boolean, a text in RON, a list or None");
-    let number: f64 = value.extract().map_err(|_| wrong())?; // those of numpy
-    Ok(number.to_string())
+    Ok(())
 }

@@ -5,13 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use experiments::metric::task_names;
-use experiments::oracle::{BranchError, Objective, play, survey};
+use experiments::oracle::{BranchError, LIMITS, Objective, play, survey};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
-use rne_core::{Assignment, Deadline, Decision, Session};
+use teaming::{Assignment, Deadline, Decision, Session};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::robot::Robot;
 use usar_sim::simulation::{Advance, Simulation as Trial};
@@ -20,7 +19,7 @@ use crate::answer::asked;
 use crate::arrays::{array, points, vectors};
 use crate::scenario::Scenario;
 use crate::trial::{recorded, to_its_end};
-use crate::waiting::Call;
+use crate::waiting::{Call, on_threads};
 
 /// How long steps are done before signals are looked at.
 const PERIOD: Duration = Duration::from_millis(50);
@@ -79,9 +78,9 @@ impl Simulation {
         Ok(self.it.steps() - begun)
     }
 
-    /// From now on, robots wish these velocities in metres a second (a row each), up to their top speeds, and the
-    /// right of way applies to them as the scenario says; with None, they go along their routes again. A fork
-    /// goes along routes.
+    /// From now on, robots wish these velocities in metres a second (a row each), up to their top speeds, and
+    /// the right of way applies to them as the scenario says; with None, they go along their routes again. A
+    /// fork goes along routes.
     #[pyo3(signature = (velocities))]
     fn steer(&mut self, velocities: Option<Bound<'_, PyAny>>) -> PyResult<()> {
         let robots = self.it.world().robots.len();
@@ -100,9 +99,9 @@ impl Simulation {
         to_its_end(py, self.it.checkpoint().resume(), policy)
     }
 
-    /// Play every assignment of the question that waits to the end of its round, on all cores, and return each
-    /// with its value, the best first. Of more than `limit` assignments, a sample is played and the best of it
-    /// improved.
+    /// Play every assignment of the question that waits to the end of its round, on all cores, and return
+    /// each with its value, the best first. Of more than `limit` assignments, a sample is played and the best
+    /// of it improved.
     #[pyo3(signature = (metric="rescuees.total", limit=1000))]
     fn oracle(&self, py: Python<'_>, metric: &str, limit: u64) -> PyResult<Vec<Played>> {
         let Some(question) = self.it.question() else {
@@ -110,19 +109,20 @@ impl Simulation {
         };
         let objective = Objective::parse(metric, &task_names(self.it.scenario()));
         let objective = objective.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        if !LIMITS.contains(&limit) {
+            let [least, most] = [LIMITS.start(), LIMITS.end()];
+            let message = format!("limit must be from {least} to {most}, found {limit}");
+            return Err(PyValueError::new_err(message));
+        }
         let call = Call::new();
         let (start, stop) = (self.it.checkpoint(), Arc::clone(&call.stop));
         let one = |assignment: &Assignment| {
             let onwards = None::<&mut Box<dyn Session>>;
             play(&start, Decision::of(assignment.clone()), onwards, Deadline::when(&stop))
         };
-        let pool = pool(0)?;
-        let work = || {
-            survey(question, &objective, limit, &[], |batch| {
-                pool.install(|| batch.par_iter().map(one).collect::<Result<Vec<_>, BranchError>>())
-            })
-        };
-        let played = call.wait_for(py, |_| Ok(()), work)?;
+        let played = |batch: &[Assignment]| batch.par_iter().map(one).collect::<Result<_, BranchError>>();
+        let work = || on_threads(usize::MAX, || survey(question, &objective, limit, &[], played));
+        let played = call.wait_for(py, |_| Ok(()), work)??;
         let played = played.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         let ranked = played.ranked(&objective).into_iter();
         Ok(ranked.map(|one| (one.assignment.groups.clone(), objective.value(&one.outcome))).collect())
@@ -177,6 +177,12 @@ impl Simulation {
         })
     }
 
+    /// Time from one decision of robots on their velocities to the next, in seconds.
+    #[getter]
+    fn control_period_s(&self) -> f64 {
+        self.it.model().control_period_s()
+    }
+
     /// For each robot, the next point of its route, in metres; where it is for a robot without one.
     #[getter]
     fn waypoints<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -228,8 +234,8 @@ impl Simulation {
         array(py, "bool", 1, self.it.world().robots.iter().map(|robot| u8::from(robot.is_able())).collect())
     }
 
-    /// What the team at home holds true: a dict with the places in metres of `rescuees` that are held to wait,
-    /// of `debris`, and of `radiation` with its radius.
+    /// What the team at home holds true: a dict with the places in metres of `rescuees` that are held to
+    /// wait, of `debris`, and of `radiation` with its radius.
     #[getter]
     fn beliefs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let belief = self.it.beliefs().of(None);
@@ -273,24 +279,17 @@ impl Simulation {
     }
 }
 
-/// Advance several trials, on this number of threads, until each asks or is over.
+/// Advance several trials, on this number of threads at most, until each asks or is over.
 #[pyfunction]
 pub fn advance_all(
     py: Python<'_>,
     mut trials: Vec<PyRefMut<'_, Simulation>>,
     threads: usize,
 ) -> PyResult<()> {
-    let pool = pool(threads)?;
     let call = Call::new();
     let stop = Arc::clone(&call.stop);
     let mut trials: Vec<&mut Trial> = trials.iter_mut().map(|trial| &mut trial.it).collect();
-    let work =
-        || pool.install(|| trials.par_iter_mut().for_each(|trial| Simulation::to_question(trial, &stop)));
-    call.wait_for(py, |_| Ok(()), work)
-}
-
-/// Threads of one call; 0 for one on each core. They do not outlive it, so that a process may fork.
-fn pool(threads: usize) -> PyResult<ThreadPool> {
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    let threads = threads.min(trials.len());
+    let work = || trials.par_iter_mut().for_each(|trial| Simulation::to_question(trial, &stop));
+    call.wait_for(py, |_| Ok(()), || on_threads(threads, work))?
 }

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use crate::errors::raised;
 use crate::policy::{Given, Policies};
 use crate::scenario::Scenario;
-use crate::waiting::Call;
+use crate::waiting::{Call, on_threads};
 
 /// What is run.
 #[derive(FromPyObject)]
@@ -28,7 +28,7 @@ pub enum File<'py> {
 /// Runs the missing trials of a sweep into the folder `out`. `progress` is called with the numbers of trials
 /// that are done and that there are. See `usar.sweep`.
 #[pyfunction]
-#[pyo3(signature = (file, policies, trials, first_seed, settings, out, jobs, progress))]
+#[pyo3(signature = (file, policies, trials, first_seed, settings, out, jobs, progress, allow_programs))]
 #[expect(clippy::too_many_arguments, reason = "they are named in Python")]
 pub fn sweep(
     py: Python<'_>,
@@ -40,11 +40,12 @@ pub fn sweep(
     out: PathBuf,
     jobs: Option<usize>,
     progress: Option<Py<PyAny>>,
+    allow_programs: bool,
 ) -> PyResult<()> {
     let call = Call::new();
     let stop = Arc::clone(&call.stop);
     let has_policies = policies.is_some();
-    let policies = Policies::of(policies.unwrap_or_default(), &call)?;
+    let policies = Policies::of(py, policies.unwrap_or_default(), &call, allow_programs)?;
     let written = has_policies.then(|| policies.written.clone());
     let overrides =
         Overrides { policies: written, trials, first_seed, set: settings, ..Overrides::default() };
@@ -81,8 +82,8 @@ pub fn sweep(
         })?;
         folder.finish(&stop)
     };
-    let ran = call.wait_for(py, tell, work);
+    let ran = call.wait_for(py, tell, || on_threads(jobs, work));
     policies.raised.check(py)?;
-    ran?.map_err(|failure| raised(py, failure))?;
+    ran??.map_err(|failure| raised(py, failure))?;
     tell(py)
 }

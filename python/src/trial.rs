@@ -7,11 +7,11 @@ use experiments::experiment::PolicySpec;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
-use rne_core::{Deadline, PolicyError, Question, Session, TrialStart};
+use teaming::{Deadline, PolicyError, Question, Session, TrialStart};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation as Trial;
 
-use crate::errors::{raised, unanswered};
+use crate::errors::{raised, unanswered, unread};
 use crate::policy::{Given, Policies, given};
 use crate::scenario::Scenario;
 use crate::waiting::Call;
@@ -41,7 +41,7 @@ pub fn to_its_end<'py>(
     policy: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let call = Call::new();
-    let policies = Policies::of(vec![given_or_rne(policy)?], &call)?;
+    let policies = Policies::of(py, vec![given_or_rne(policy)?], &call, false)?;
     let spec = policies.spec(py)?;
     spec.check_allowed(trial.given()).map_err(|failure| raised(py, failure))?;
     let (name, seed, stop) = (trial.given().name.clone(), trial.seed(), Arc::clone(&call.stop));
@@ -96,8 +96,8 @@ pub fn recorded<'py>(
     py.import("usar._records")?.getattr("Record")?.call1((fields,))
 }
 
-/// Answer a question by a policy: the ids of each task's group, or a dict with `groups` and `idle` where robots
-/// stay at home.
+/// Answer a question by a policy: the ids of each task's group, or a dict with `groups` and `idle` where
+/// robots stay at home.
 ///
 /// >>> import usar
 /// >>> trial = usar.Simulation(usar.Scenario.builtin("paper"), seed=1)
@@ -107,10 +107,10 @@ pub fn recorded<'py>(
 #[pyo3(signature = (question, policy=None), text_signature = "(question, policy='RNE')")]
 pub fn group(question: &Bound<'_, PyAny>, policy: Option<Bound<'_, PyAny>>) -> PyResult<Py<PyAny>> {
     let py = question.py();
-    let question: Question = depythonize(question)?;
+    let question: Question = depythonize(question).map_err(|error| unread(py, error))?;
     let question = question.checked().map_err(|error| PyValueError::new_err(error.to_string()))?;
     let call = Call::new();
-    let policies = Policies::of(vec![given_or_rne(policy)?], &call)?;
+    let policies = Policies::of(py, vec![given_or_rne(policy)?], &call, false)?;
     let spec = policies.spec(py)?;
     let decision = call.wait_for(py, |_| Ok(()), || spec.made().decide(&question))?;
     policies.raised.check(py)?;

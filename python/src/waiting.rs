@@ -5,14 +5,25 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::available_parallelism;
 use std::time::{Duration, Instant};
 
 use experiments::panic_message;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rayon::ThreadPoolBuilder;
 
 /// How often signals are looked at.
 const PERIOD: Duration = Duration::from_millis(50);
+
+/// Does work on threads of its own, one for each core at most. They have ended when it returns, because the
+/// child of a process that forks has none of its threads.
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let cores = available_parallelism().map_or(1, usize::from);
+    let builder = ThreadPoolBuilder::new().num_threads(threads.clamp(1, cores));
+    let done = builder.build_scoped(rayon::ThreadBuilder::run, |pool| pool.install(work));
+    done.map_err(|error| PyRuntimeError::new_err(error.to_string()))
+}
 
 /// Something that the thread that called does for a thread at work.
 type Job = Box<dyn FnOnce(Python<'_>) + Send>;
@@ -22,8 +33,8 @@ type Job = Box<dyn FnOnce(Python<'_>) + Send>;
 pub struct Caller(Sender<Option<Job>>);
 
 impl Caller {
-    /// What this gives on the thread that called: there, Ctrl-C raises an exception in the midst of it. `None`
-    /// once the call is ending.
+    /// What this gives on the thread that called: there, Ctrl-C raises an exception in the midst of it.
+    /// `None` once the call is ending.
     pub fn ask<T: Send + 'static>(
         &self,
         job: impl FnOnce(Python<'_>) -> PyResult<T> + Send + 'static,

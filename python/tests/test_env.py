@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import doctest
+import itertools
 import time
 from pathlib import Path
+from typing import Any, Callable
 
 import gymnasium
 import numpy
@@ -81,6 +83,19 @@ def test_sizes_that_wishes_break_are_settled() -> None:
         assert usar.group(question, fixed) == groups  # refused if it breaks a rule
 
 
+def test_parts_go_where_fewest_robots_move() -> None:
+    draws = numpy.random.default_rng(0)
+    for tasks in [*range(1, 6)] * 100 + [64]:
+        parts = draws.integers(0, 5, tasks).tolist()
+        wished = numpy.bincount(draws.integers(0, tasks, sum(parts)), minlength=tasks).tolist()
+        sizes = _groups._sizes("Parts", parts, wished)
+        assert sorted(sizes) == sorted(parts)
+        if tasks < 6:
+            orders = [list(order) for order in itertools.permutations(parts)]
+            moves = [sum(max(0, has - size) for has, size in zip(wished, order)) for order in orders]
+            assert wished == parts or sizes == orders[moves.index(min(moves))]
+
+
 def test_a_robot_that_rests_stays_with_a_mask() -> None:
     env = usar.env.Robots(usar.Scenario.builtin("gallery/failures"))
     seen, _ = env.reset(seed=1)
@@ -124,8 +139,6 @@ def test_rewards_are_what_the_trial_gained() -> None:
 
 def test_robots_go_where_actions_send_them() -> None:
     scenario = usar.Scenario.builtin("paper").set(duration_s=20, **{"conflicts.resolver": "None"})
-    with pytest.raises(ValueError, match="hz must be above 0 and at most 50"):
-        usar.env.Velocities(scenario, hz=100)
     env = usar.env.Velocities(scenario, hz=10)
     env.reset(seed=1)
     start = env._trial.positions
@@ -163,3 +176,128 @@ def test_speed_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     with capsys.disabled():
         print(f"\nvelocities: {steps / took:.0f} steps a second with 12 robots")
         print(f"vector of 8: {rates[1]:.1f} and {rates[2]:.1f} decisions a second on one and two threads")
+
+
+@pytest.mark.parametrize(
+    ("values", "hz", "near"),
+    [
+        ({}, 40, "10"),
+        ({}, 30, "10"),
+        ({}, 50, "10"),
+        ({}, 7, "10 or 5"),
+        ({}, 3, "3.33333 or 2.5"),
+        ({"control_period_s": 0.02}, 40, "50 or 25"),
+        ({"control_period_s": 0.04}, 10, "12.5 or 8.33333"),
+    ],
+)
+def test_a_rate_is_kept_or_refused(values: dict[str, float], hz: float, near: str) -> None:
+    scenario = usar.Scenario.builtin("paper").set(duration_s=30, **values)
+    with pytest.raises(ValueError, match=f"found {hz}; nearby is {near}$"):
+        usar.env.Velocities(scenario, hz=hz)
+    for rate in map(float, near.split(" or ")):
+        swarm = usar.env.Velocities(scenario, hz=rate)
+        swarm.reset(seed=1)
+        still = {agent: numpy.zeros(2, numpy.float32) for agent in swarm.agents}
+        before = swarm._trial.time_s
+        for _ in range(10):
+            swarm.step(still)
+        assert 10 / (swarm._trial.time_s - before) == pytest.approx(rate, rel=1e-5)
+
+
+RATES = [("paper", 10), ("two-aerial-roles", 12.5), ("paper-calibrated", 25)]
+
+
+@pytest.mark.parametrize(("name", "rate"), RATES)
+def test_agents_drive_as_often_as_robots_decide(name: str, rate: float) -> None:
+    swarm = usar.env.Velocities(usar.Scenario.builtin(name))
+    swarm.reset(seed=1)
+    swarm.step(dict.fromkeys(swarm.agents, numpy.zeros(2, numpy.float32)))
+    assert swarm._trial.time_s == pytest.approx(1 / rate)
+
+
+@pytest.mark.parametrize("hz", [0, -1, 1e-300, float("nan"), float("inf")])
+def test_a_rate_that_is_none_is_refused(hz: float) -> None:
+    with pytest.raises(ValueError, match="hz must be"):
+        usar.env.Velocities(usar.Scenario.builtin("paper").set(duration_s=30), hz=hz)
+
+
+def test_robots_heed_every_action() -> None:
+    scenario = usar.Scenario.builtin("paper").set(duration_s=30, **{"conflicts.resolver": "None"})
+    swarm = usar.env.Velocities(scenario)
+    swarm.reset(seed=1)
+    for turn in range(8):
+        east = 0.2 if turn % 2 == 0 else -0.2
+        before = swarm._trial.velocities[:, 0]
+        swarm.step(dict.fromkeys(swarm.agents, numpy.array([east, 0.0], numpy.float32)))
+        change = swarm._trial.velocities[:, 0] - before
+        assert (change * east > 0.0).sum() >= 10, turn
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        lambda wishes: wishes.__setitem__((2, 11), 7),
+        lambda wishes: wishes.__setitem__((2, 0), -1),
+        lambda wishes: wishes.__setitem__((2, 0), numpy.nan),
+        lambda wishes: wishes.resize((2, 12), refcheck=False),
+        lambda wishes: wishes.resize((4, 12), refcheck=False),
+        lambda wishes: wishes.resize((3, 11), refcheck=False),
+        lambda wishes: wishes.resize((3, 13), refcheck=False),
+    ],
+)
+def test_all_wishes_are_checked_before_the_first_is_answered(spoil: Callable[[Any], None]) -> None:
+    scenario = usar.Scenario.builtin("paper").set(duration_s=120)
+    many, again = (usar.env.vector(scenario, 3, 1) for _ in range(2))
+    for one in (many, again):
+        one.reset(seed=1)
+    good = numpy.zeros((3, 12))
+    bad = good.copy()
+    spoil(bad)
+    with pytest.raises(ValueError):
+        many.step(bad)
+    (seen, *rest), (expected, *as_expected) = many.step(good), again.step(good)
+    assert all(numpy.array_equal(seen[name], expected[name]) for name in seen)
+    assert numpy.array_equal(rest[0], as_expected[0])
+
+
+def test_a_single_wish_is_checked_before_it_is_answered() -> None:
+    scenario = usar.Scenario.builtin("paper").set(duration_s=120)
+    one = usar.env.Coordinator(scenario)
+    one.reset(seed=1)
+    for wrong in (numpy.zeros(11), numpy.zeros(13), numpy.full(12, 7)):
+        with pytest.raises(ValueError, match="wishes must be"):
+            one.step(wrong)
+    one.step(numpy.zeros(12))
+    robots = usar.env.Robots(scenario)
+    robots.reset(seed=1)
+    with pytest.raises(ValueError, match="wishes must be"):
+        robots.step(dict.fromkeys(robots.agents, 7))
+    robots.step(dict.fromkeys(robots.agents, 0))
+
+
+@pytest.mark.parametrize("seeds", [[], [1], [1, 2, 3], (1,), numpy.arange(3)])
+def test_seeds_of_another_number_are_refused(seeds: Any) -> None:
+    many = usar.env.vector(usar.Scenario.builtin("paper").set(duration_s=120), 2, 1)
+    with pytest.raises(ValueError, match=f"seed must be one, or 2 in a list, found {len(seeds)}"):
+        many.reset(seed=seeds)
+    good_seeds: list[Any] = [[1, 2], numpy.array([1, 2]), (1, None), 1, numpy.int64(1), None]
+    for good in good_seeds:
+        seen, _ = many.reset(seed=good)
+        assert many.observation_space.contains(seen)
+
+
+@pytest.mark.parametrize(
+    ("n", "threads", "wrong"),
+    [
+        (0, 1, "n must be from 1 to 1000000, found 0"),
+        (-1, 1, "n must be from 1"),
+        (10**30, 1, "n must be from 1"),
+        (2, 0, "threads must be from 1 to 1024, found 0"),
+        (2, -1, "threads must be from 1"),
+        (2, 10**6, "threads must be from 1"),
+        (2, 10**30, "threads must be from 1"),
+    ],
+)
+def test_a_vector_has_some_trials_and_not_too_many_threads(n: int, threads: int, wrong: str) -> None:
+    with pytest.raises(ValueError, match=wrong):
+        usar.env.vector(usar.Scenario.builtin("paper"), n, threads)

@@ -93,7 +93,7 @@ def test_policies_are_names_functions_and_objects(short: usar.Scenario) -> None:
         usar.run(short, lambda question: [])
     with pytest.raises(TypeError, match="policies must be a list or a dict"):
         usar.sweep(short, "RNE", 1)
-    with pytest.raises(ValueError, match="jobs must be at least 1"):
+    with pytest.raises(ValueError, match="jobs must be from 1 to 1024, found 0"):
         usar.sweep(short, ["RNE"], 1, jobs=0)
 
 

@@ -2,10 +2,12 @@
 //! interrupted job resumes from it.
 
 use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use store::files::{self, NewFile};
@@ -28,12 +30,43 @@ pub struct Job {
     pub results: &'static [&'static str],
 }
 
+/// The folder of a job.
+pub struct JobFolder<T> {
+    /// Its path.
+    pub path: PathBuf,
+    /// What decides its entries.
+    pub origin: Value,
+    /// What is done, in the order of the log.
+    pub entries: Vec<T>,
+    /// Absent if the folder was opened for reading.
+    log: Option<Log>,
+}
+
 /// A list in a job's origin that may grow from run to run.
 const GROWS: &str = "seeds";
 
+impl<T: Serialize + DeserializeOwned> JobFolder<T> {
+    /// Adds what was done. It is on disk when this returns.
+    ///
+    /// # Errors
+    /// The disk does not take it, or the folder was opened for reading.
+    pub fn add(&mut self, entries: Vec<T>) -> Result<(), Failure> {
+        let log = self.log.as_mut().ok_or_else(|| Failure::run("the folder was opened for reading"))?;
+        log.add(&entries)?;
+        self.entries.extend(entries);
+        Ok(())
+    }
+}
+
+/// The message after an interruption: what is in the folder.
+pub fn interrupted(folder: &Path, what: impl Display) -> Failure {
+    let folder = folder.display();
+    Failure::Interrupted(format!("stopped; {what} in {folder}, and the same command goes on"))
+}
+
 impl Job {
-    /// Opens the log of a new job, or of one to resume; returns its entries and its origin, whose list of
-    /// seeds is the longer one. `is_fresh` starts over.
+    /// Opens the folder of a new job, or of one to resume, whose list of seeds becomes the longer one.
+    /// `is_fresh` starts over.
     ///
     /// # Errors
     /// The folder belongs to something else, another process works there, or the disk does not take it.
@@ -42,11 +75,11 @@ impl Job {
         folder: &Path,
         mut origin: Value,
         is_fresh: bool,
-    ) -> Result<(Log, Vec<T>, Value), Failure> {
+    ) -> Result<JobFolder<T>, Failure> {
         let is_owned = folder.join(self.origin).is_file();
         check_is_owned(folder, self.noun, is_owned)?;
         fs::create_dir_all(folder).map_err(at(folder))?;
-        let lock = Lock::of_folder(folder, &mut |_| {})?;
+        let lock = Lock::of_folder(folder)?;
         if is_owned && !is_fresh {
             let there = self.origin_in(folder)?;
             self.check_continues(folder, &there, &origin)?;
@@ -60,28 +93,31 @@ impl Job {
         }
         NewFile::write(folder, self.origin, format!("{origin:#}\n").as_bytes())?;
         let (log, entries) = Log::resume(&folder.join(self.log), &self.header(&origin), Arc::new(lock))?;
-        Ok((log, entries, origin))
+        Ok(JobFolder { path: folder.to_owned(), origin, entries, log: Some(log) })
     }
 
-    /// The origin and the entries of the job in a folder. The program that ran it may be another one.
+    /// Reads the folder of a job. The program that ran it may be another one.
     ///
     /// # Errors
     /// It is not the folder of such a job, or the log was changed.
-    pub fn read<T: DeserializeOwned>(&self, folder: &Path) -> Result<(Value, Vec<T>), Failure> {
+    pub fn read<T: DeserializeOwned>(&self, folder: &Path) -> Result<JobFolder<T>, Failure> {
         let origin = self.origin_in(folder)?;
         let entries = store::read(&folder.join(self.log), &self.header(&origin))?;
-        Ok((origin, entries))
+        Ok(JobFolder { path: folder.to_owned(), origin, entries, log: None })
     }
 
     fn origin_in(&self, folder: &Path) -> Result<Value, Failure> {
         let path = folder.join(self.origin);
-        let text = files::read(&path).map_err(|error| {
-            let (folder, noun) = (folder.display(), self.noun);
-            Failure::input(format!("{folder}: is not the folder of a {noun}: {}: {error}", self.origin))
-        })?;
+        let text = files::read(&path).map_err(|error| self.is_none(folder, error))?;
         serde_json::from_slice(&text).map_err(|error| {
             Failure::input(format!("{}: {error}; --out takes another folder", path.display()))
         })
+    }
+
+    /// The failure of a folder that is none of such a job.
+    pub fn is_none(&self, folder: &Path, reason: impl Display) -> Failure {
+        let (folder, noun) = (folder.display(), self.noun);
+        Failure::input(format!("{folder}: is not the folder of a {noun}: {}: {reason}", self.origin))
     }
 
     fn header(&self, origin: &Value) -> Header {

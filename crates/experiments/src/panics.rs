@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn sources_of_libraries_are_named_without_the_machines_folders() {
-        let path = "/home/x/.cargo/registry/src/index.crates.io-1/parry2d-0.31.1/src/lib.rs";
+        let path = "/home/x/.cargo/registry/src/registry-1/parry2d-0.31.1/src/lib.rs";
         assert_eq!(from_sources(path), "parry2d-0.31.1/src/lib.rs");
         assert_eq!(from_sources("crates/usar/src/lib.rs"), "crates/usar/src/lib.rs");
     }

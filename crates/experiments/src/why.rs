@@ -1,8 +1,8 @@
 //! Explanations of a decision: what drove it, how close it was, and what other policies would have decided.
 
-use rne_core::{Assignment, Decision, Question, TaskId, TeamTrust};
 use serde::Serialize;
 use store::Failure;
+use teaming::{Assignment, Decision, Question, TaskId, TeamTrust};
 
 use crate::experiment::PolicySpec;
 

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::note_panic;
 use experiments::run::{Limits, Sessions, run_all};
-use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
+use teaming::{Decision, Policy, PolicyError, PolicyKind, Question};
 
 static ASKED: AtomicU64 = AtomicU64::new(0);
 

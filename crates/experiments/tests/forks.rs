@@ -6,7 +6,7 @@ use experiments::experiment::with_settings;
 use experiments::oracle::{Branch, advance_to};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{Asked, Deadline};
+use teaming::{Asked, Deadline};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 

@@ -21,7 +21,7 @@ fn an_interrupted_sweep_has_the_first_seeds_of_every_case() {
     let cases = experiment.cases.len();
     assert!(cases > 1);
     let place = tempfile::tempdir().unwrap();
-    let opening = Opening { shard: None, is_fresh: false };
+    let opening = Opening::default();
     let folder =
         Folder::open(&place.path().join("energy"), Arc::new(experiment), opening, &mut |_| ()).unwrap();
     let missing = missing(&folder, None);

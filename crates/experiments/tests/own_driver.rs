@@ -7,10 +7,10 @@ use std::sync::{Arc, Mutex};
 
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::Sessions;
-use rne_core::{
+use serde::{Deserialize, Serialize};
+use teaming::{
     Asked, Basis, Decision, Driver, MadePolicy, PolicyError, PolicyKind, Registry, Session, TrialStart,
 };
-use serde::{Deserialize, Serialize};
 
 /// Options: who answers in truth, and whether that is said.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

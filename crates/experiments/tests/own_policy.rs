@@ -10,8 +10,8 @@ use experiments::rounds::odd_sizes;
 use experiments::run::{Limits, Sessions};
 use experiments::sweep::folder::{Folder, Opening};
 use experiments::sweep::{missing, run_trials};
-use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
 use serde::{Deserialize, Serialize};
+use teaming::{Decision, Policy, PolicyError, PolicyKind, Question};
 
 /// Sends all robots to the easiest task.
 #[derive(Clone)]

@@ -7,7 +7,7 @@ use color_quant::NeuQuant;
 use gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 use crate::error::PictureError;
-use crate::picture::Pixels;
+use crate::raster::Pixels;
 
 /// Number of colours of an animation; one more number stands for an unchanged pixel.
 const COLOURS: usize = 255;

@@ -28,8 +28,8 @@ pub(crate) fn begun<'l>(look: &'l Look, world: &World, title: &str) -> Sheet<'l>
     sheet
 }
 
-/// The picture with its walls and its legend: these entries, then those of the ground; `first_sampled` as in a
-/// [`Plan`](crate::Plan).
+/// The picture with its walls and its legend: these entries, then those of the ground; `first_sampled` as in
+/// a [`Plan`](crate::Plan).
 pub(crate) fn finished(
     mut sheet: Sheet,
     world: &World,

@@ -1,5 +1,5 @@
-//! Pictures of worlds and trials without a display: maps, moments and trails as SVG and PNG, and sequences
-//! of moments as GIF.
+//! Pictures of worlds and trials without a display: maps, moments and trails as SVG; with the feature
+//! `raster` also as PNG and PDF, and sequences of moments as GIF.
 //!
 //! [`plan`] draws the world before the trial, [`moment`] the state at a frame of a recording, and
 //! [`trails`] the trajectories of all robots on one map. Each function gives a [`Picture`], which is SVG
@@ -13,19 +13,19 @@
 //! let recording = Recording::read(&std::fs::read("paper.usrec")?)?;
 //! let picture = moment(&recording, recording.frame_at(120.0), &Look::default())?;
 //! std::fs::write("frame.svg", picture.svg())?;
-//! std::fs::write("frame.png", picture.png()?)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "raster")]
 mod animation;
 mod error;
-mod font;
 mod ground;
 mod legend;
 mod moment;
-mod pdf;
 mod picture;
 mod plan;
+#[cfg(feature = "raster")]
+mod raster;
 mod shapes;
 mod sheet;
 mod svg;
@@ -33,9 +33,12 @@ mod team;
 mod theme;
 mod trails;
 
+#[cfg(feature = "raster")]
 pub use animation::Animation;
 pub use error::PictureError;
 pub use moment::moment;
-pub use picture::{Look, Picture, Pixels, Width};
+pub use picture::{Look, Picture, Width};
 pub use plan::{Plan, plan};
+#[cfg(feature = "raster")]
+pub use raster::Pixels;
 pub use trails::trails;

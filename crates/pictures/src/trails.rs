@@ -1,6 +1,5 @@
 //! The trajectories of all robots in a trial, on one map.
 
-use geo::{Coord, LineString, Simplify};
 use recording::Recording;
 
 use crate::error::PictureError;
@@ -94,10 +93,42 @@ fn stretches(recording: &Recording) -> Result<Vec<Stretch>, PictureError> {
 /// A stretch as a line with as few corners as possible.
 fn way(sheet: &Sheet, stretch: &Stretch) -> Path {
     let mut way = Path::default();
-    let places = stretch.places_mm.iter().map(|place| sheet.at_mm(*place)).map(|[x, y]| Coord { x, y });
-    let line = LineString::new(places.collect());
-    if line.0.len() > 1 {
-        way.line(line.simplify(BESIDE).0.into_iter().map(|Coord { x, y }| [x, y]));
+    let places: Vec<[f64; 2]> = stretch.places_mm.iter().map(|place| sheet.at_mm(*place)).collect();
+    if let [first, .., _] = places[..] {
+        let mut corners = vec![first];
+        add_corners(&places, &mut corners);
+        way.line(corners);
     }
     way
+}
+
+/// Adds the corners of a line after its first point: those without which it would be farther than [`BESIDE`]
+/// from its points (Ramer 1972; Douglas and Peucker 1973).
+fn add_corners(line: &[[f64; 2]], corners: &mut Vec<[f64; 2]>) {
+    let [first, inside @ .., last] = line else { return };
+    let far = inside.iter().enumerate().fold((0, 0.0), |far, (i, point)| {
+        let distance = distance_to([*first, *last], *point);
+        if distance >= far.1 { (i + 1, distance) } else { far }
+    });
+    match far {
+        (corner, distance) if distance > BESIDE => {
+            add_corners(&line[..=corner], corners);
+            add_corners(&line[corner..], corners);
+        }
+        _ => corners.push(*last),
+    }
+}
+
+/// The distance of a point to a segment.
+fn distance_to([a, b]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> f64 {
+    let [dx, dy] = [b[0] - a[0], b[1] - a[1]];
+    let square = dx * dx + dy * dy;
+    let along = ((x - a[0]) * dx + (y - a[1]) * dy) / square;
+    if square == 0.0 || along <= 0.0 {
+        (x - a[0]).hypot(y - a[1])
+    } else if along >= 1.0 {
+        (x - b[0]).hypot(y - b[1])
+    } else {
+        (((a[1] - y) * dx - (a[0] - x) * dy) / square).abs() * dx.hypot(dy)
+    }
 }

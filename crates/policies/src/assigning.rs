@@ -12,8 +12,8 @@
 
 use std::cmp::Reverse;
 
-use rne_core::ids::RoleId;
-use rne_core::question::Question;
+use teaming::ids::RoleId;
+use teaming::question::Question;
 
 /// Values are rounded to whole numbers of this part of 1.
 const STEPS: f64 = 1_099_511_627_776.0; // 2^40

@@ -9,12 +9,12 @@
 //!
 //! Example: robots with strengths 4, 3, 2, 1 and two tasks of two slots: 4 + 1 and 3 + 2, a difference of 0.
 
-use rne_core::decision::Decision;
-use rne_core::error::PolicyError;
-use rne_core::ids::TaskId;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::ids::TaskId;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 use crate::assigning::groups;
 use crate::searching::{Loss, least};

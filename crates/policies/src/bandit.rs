@@ -12,26 +12,20 @@
 //! 4 are (1, 0.5) for the first and (0.5, 0.25) for the second; the bounds are equally wide. All sums are
 //! 1.25 and 1: in round 3 the first one goes to the harder task.
 
-use rne_core::decision::Decision;
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
-use serde::{Deserialize, Serialize};
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 use crate::assigning::{best, groups};
 
-/// Options of `BANDIT`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// How much being unsure counts, from 0 to 10; 1 is the authors' choice.
-    pub width: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { width: 1.0 }
+teaming::options! {
+    /// Options of `BANDIT`.
+    #[derive(Copy)]
+    pub struct Options {
+        /// How much being unsure counts, from 0 to 10; 1 is the authors' choice.
+        pub width: f64 = 1.0,
     }
 }
 
@@ -102,7 +96,7 @@ fn tried(question: &Question) -> Vec<Vec<Tried>> {
 #[cfg(test)]
 mod tests {
     use rand::RngExt;
-    use rne_core::{GroupOutcome, MemberOutcome, RandomSeed, RoundOutcome, TaskId};
+    use teaming::{GroupOutcome, MemberOutcome, RandomSeed, RoundOutcome, TaskId};
 
     use super::*;
     use crate::made_up::{question, with_needs};

@@ -9,9 +9,9 @@
 
 use rand::Rng;
 use rand::seq::SliceRandom;
-use rne_core::error::PolicyError;
-use rne_core::ids::TaskId;
-use rne_core::question::Question;
+use teaming::error::PolicyError;
+use teaming::ids::TaskId;
+use teaming::question::Question;
 
 use crate::assigning::{best, matching, of_role, slots};
 use crate::searching::{Loss, by_swaps};
@@ -190,7 +190,7 @@ fn labelled(question: &Question, cluster_of: &[usize], table: &[Vec<f64>]) -> Ve
 
 #[cfg(test)]
 pub(super) mod tests {
-    use rne_core::{Assignment, GroupSizes, Member, assignments};
+    use teaming::{Assignment, GroupSizes, Member, assignments};
 
     use super::*;
     use crate::made_up::drawn as drawn_question;

@@ -1,12 +1,12 @@
 //! `DIS`: the nearest task from the initial position until its group is full (paper: Section VI; baseline).
 
 use crate::facts::{missing, squared_distance};
-use rne_core::decision::Decision;
-use rne_core::error::PolicyError;
-use rne_core::ids::TaskId;
-use rne_core::policy::Policy;
-use rne_core::question::{Member, Question};
-use rne_core::registry::PolicyKind;
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::ids::TaskId;
+use teaming::policy::Policy;
+use teaming::question::{Member, Question};
+use teaming::registry::PolicyKind;
 
 const NAME: &str = "DIS";
 

@@ -2,11 +2,11 @@
 
 use crate::facts::missing;
 use crate::ranking::deal_by_rank;
-use rne_core::decision::Decision;
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 const NAME: &str = "ENG";
 

@@ -1,6 +1,6 @@
 //! Facts of a question that several policies need.
 
-use rne_core::error::PolicyError;
+use teaming::error::PolicyError;
 
 /// The square of the distance between two places, in square metres.
 pub(super) fn squared_distance(a: [f64; 2], b: [f64; 2]) -> f64 {

@@ -9,11 +9,11 @@
 //! Example: robots with the one need 1, 2, 8, 9 and two tasks of two slots: {1, 2} and {8, 9}; with
 //! `distance: 0` the latter go to the harder task.
 
-use rne_core::decision::Decision;
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 use crate::assigning::groups;
 use crate::clustering::{clusters, standardised};

@@ -1,10 +1,10 @@
 //! The policies and the estimators of the house, one file each, with their options. They answer the
-//! questions of [`rne_core`].
+//! questions of [`teaming`].
 //!
 //! ```
 //! let rne = policies::standard().make("RNE", "(score: Sum)")?;
 //! assert!(rne.options.contains("score: Sum, "));
-//! # Ok::<(), rne_core::RegistryError>(())
+//! # Ok::<(), teaming::RegistryError>(())
 //! ```
 //!
 //! A policy is one file and one line in [`standard`], and so is a trust measure; an estimator is one file and
@@ -33,7 +33,7 @@ pub mod snake;
 pub mod spectral;
 pub mod utility;
 
-use rne_core::Registry;
+use teaming::Registry;
 
 pub use rne::RneOptions;
 
@@ -64,8 +64,8 @@ mod made_up;
 
 #[cfg(test)]
 mod tests {
-    use rne_core::RegistryError;
-    use rne_core::registry_error::Entry;
+    use teaming::RegistryError;
+    use teaming::registry_error::Entry;
 
     use super::*;
 

@@ -2,8 +2,9 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::question::{Need, RandomSeed, SCHEMA_VERSION, hardest_first};
-use rne_core::{GroupSizes, Member, NeedVector, Question, Quota, RoleId, Task};
+use rne_core::NeedVector;
+use teaming::question::{Need, RandomSeed, SCHEMA_VERSION, hardest_first};
+use teaming::{GroupSizes, Member, Question, Quota, RoleId, Task};
 
 /// Robots of one role at one place, by their needs of weight 1, and tasks of these ranks without places.
 pub(crate) fn with_needs(needs: &[&[f64]], difficulties: &[u32]) -> Question {

@@ -7,11 +7,11 @@
 //! Example: two robots have utilities (1, 0.99) and (1, 0) at two tasks of one slot each. OPTIMAL sends the
 //! first one to the second task, 1.99 in all; GREEDY takes the first 1 and gets 1.00.
 
-use rne_core::decision::{Account, Decision};
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
+use teaming::decision::{Account, Decision};
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 use crate::assigning::{best, groups};
 use crate::utility::{Utility, UtilityOptions};

@@ -3,11 +3,11 @@
 use rand::seq::SliceRandom;
 
 use crate::ranking::deal;
-use rne_core::decision::Decision;
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 /// Per role, shuffles the robots and deals them out over the tasks by quota.
 #[derive(Debug, Clone, Copy)]

@@ -2,9 +2,9 @@
 
 use std::cmp::Ordering;
 
-use rne_core::decision::{Account, Decision, Ranked, Ranking};
-use rne_core::error::PolicyError;
-use rne_core::question::{Member, Question};
+use teaming::decision::{Account, Decision, Ranked, Ranking};
+use teaming::error::PolicyError;
+use teaming::question::{Member, Question};
 
 /// Per role, sorts by `better_first` and deals the members out over the tasks, the hardest first; ties by id.
 /// `key_name` says what the members are sorted by. `value` is the part of a key that the account shows.

@@ -1,9 +1,9 @@
 //! The assignment with the least loss, where only whole assignments have one: exact for few assignments, and
 //! by swaps for more.
 
-use rne_core::GroupSizes;
-use rne_core::assignments;
-use rne_core::question::Question;
+use teaming::GroupSizes;
+use teaming::assignments;
+use teaming::question::Question;
 
 use crate::assigning::of_role;
 

@@ -3,19 +3,19 @@
 //! The opposite reading of trust in Yang & Parasuraman 2021, whose policy RNE sets groups apart. The sum goes
 //! over all pairs of one role in one group; a pair counts with the mean of both relative entropies between
 //! its needs distributions, that is, half of Jeffreys's divergence. An infinite one counts as 1,000 nats.
-//! Exact up to 100,000 assignments of n robots, if n^2 for each of them is no more than 10^8; above that, swaps
-//! from the order of the ids, in time n^2 for each pass.
+//! Exact up to 100,000 assignments of n robots, if n^2 for each of them is no more than 10^8; above that,
+//! swaps from the order of the ids, in time n^2 for each pass.
 //!
 //! Example: four robots of a role with needs (1, 3), (3, 1), (1, 3), (3, 1), and two tasks of two slots: the
 //! first and the third one work together, and so do the others, with a sum of 0.
 
-use rne_core::decision::Decision;
 use rne_core::divergence::jeffreys;
-use rne_core::error::PolicyError;
 use rne_core::needs::{NeedDistribution, NeedWeights};
-use rne_core::policy::Policy;
-use rne_core::question::{Member, Question};
-use rne_core::registry::PolicyKind;
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::{Member, Question};
+use teaming::registry::PolicyKind;
 
 use crate::assigning::{groups, of_role, slots};
 use crate::searching::{Loss, least};

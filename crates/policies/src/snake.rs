@@ -7,12 +7,12 @@
 //! Example: robots with strengths 4, 3, 2, 1 and two tasks of two slots. The harder task gets 4, the other
 //! one 3 and 2, the harder one 1: a sum of 5 each.
 
-use rne_core::decision::{Account, Decision};
-use rne_core::error::PolicyError;
-use rne_core::ids::TaskId;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
+use teaming::decision::{Account, Decision};
+use teaming::error::PolicyError;
+use teaming::ids::TaskId;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 use crate::ranking::rank;
 use crate::utility::strengths;

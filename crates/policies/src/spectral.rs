@@ -9,11 +9,11 @@
 
 use nalgebra::linalg::SymmetricEigen;
 use nalgebra::{DMatrix, DVector};
-use rne_core::decision::Decision;
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
+use teaming::decision::Decision;
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 use crate::assigning::groups;
 use crate::clustering::{clusters, squared, standardised};

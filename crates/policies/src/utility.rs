@@ -17,25 +17,19 @@
 //! Of two tasks, the harder one has worth 1 and the other one 0.5. With `distance: 0`, the weaker member is
 //! worth 0.75 at the harder task and 0.375 at the other one.
 
-use rne_core::error::PolicyError;
-use rne_core::question::{Member, Question, Task};
-use serde::{Deserialize, Serialize};
+use teaming::error::PolicyError;
+use teaming::question::{Member, Question, Task};
 
 use crate::facts::{missing, squared_distance};
 
-/// Options of policies that need no more than the utility.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct UtilityOptions {
-    /// How much strength at worthy tasks counts, from 0 to 100.
-    pub quality: f64,
-    /// How much the way to the task counts, from 0 to 100. With 0, no places are needed.
-    pub distance: f64,
-}
-
-impl Default for UtilityOptions {
-    fn default() -> Self {
-        Self { quality: 1.0, distance: 1.0 }
+teaming::options! {
+    /// Options of policies that need no more than the utility.
+    #[derive(Copy)]
+    pub struct UtilityOptions {
+        /// How much strength at worthy tasks counts, from 0 to 100.
+        pub quality: f64 = 1.0,
+        /// How much the way to the task counts, from 0 to 100. With 0, no places are needed.
+        pub distance: f64 = 1.0,
     }
 }
 

@@ -1,7 +1,7 @@
 //! A model for a trust measure of one's own: what it measures, its options, and its place in a registry.
 
-use rne_core::{Assignment, MeasureKind, PolicyError, Question, TeamTrust, TrustMeasure};
 use serde::{Deserialize, Serialize};
+use teaming::{Assignment, MeasureKind, PolicyError, Question, TeamTrust, TrustMeasure};
 
 /// Options, with their defaults.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! A custom policy, written outside the crate: a model for your own.
 
-use rne_core::{Decision, Member, Policy, PolicyError, PolicyKind, Question, Registry};
 use serde::{Deserialize, Serialize};
+use teaming::{Decision, Member, Policy, PolicyError, PolicyKind, Question, Registry};
 
 /// The options: a struct with defaults that serde can read and write.
 #[derive(Serialize, Deserialize)]

@@ -1,43 +1,84 @@
 //! `EXEC`: a policy whose sessions are processes of a program.
 
+use std::ffi::OsString;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Duration;
 
-use rne_core::{
+use teaming::{
     Asked, Basis, Deadline, Decision, Driver, PolicyError, PolicyKind, Question, Session, TrialStart,
 };
 
+use crate::consent::Consent;
 use crate::error::{Complaint, ProgramError};
-use crate::files::{files, fingerprint};
-use crate::options::Options;
+use crate::files::fingerprint;
+use crate::options::{NAME, Options, OptionsError};
 use crate::process::{MOST_BYTES, NoLine, Process, Until};
 use crate::protocol::{Greeting, Message, Trial, decision};
 
-/// The policy's name.
-const NAME: &str = "EXEC";
+/// What it does.
+const ABOUT: &str = "a program in any language answers";
+
+/// A longer wait for a hello is told.
+const NOTICED: Duration = Duration::from_secs(5);
 
 /// So many processes that end by themselves, one after the other, are enough.
 const MOST_DEATHS: u32 = 3;
 
-/// The kind `EXEC`. Its processes are ended when `stop` is set; `begin` is called before each start of a
-/// process, so that a command can set `stop` on signals from then on.
-#[must_use]
-pub fn kind(stop: &Arc<AtomicBool>, begin: fn()) -> PolicyKind {
-    let stop = Stop { flag: Arc::clone(stop), begin };
-    let make = move |options: Options, _: &_| {
-        options.check()?;
-        let program = Program::new(options, NAME.to_owned(), stop.clone());
-        Ok::<_, crate::options::OptionsError>(Arc::new(Handle(Arc::new(program))) as Arc<dyn Driver>)
-    };
-    PolicyKind::made(NAME, "a program in any language answers", make)
+/// How the programs of a command are started and ended.
+#[derive(Clone)]
+pub struct Launch {
+    /// Ends processes and waits when it is set.
+    pub stop: Arc<AtomicBool>,
+    /// Called before each start of a process, so that a command can set `stop` on signals from then on.
+    pub begin: fn(),
+    /// The longest time of a trial, which no wait for a line goes beyond.
+    pub longest: Option<Duration>,
+    /// Which commands may be started.
+    pub consent: Consent,
+    /// The words that start [`guard`](crate::guard) in a process of its own, before the number of this
+    /// process and the words of a program; empty for no guard.
+    pub guard: Vec<OsString>,
 }
 
-/// When everything is to stop.
-#[derive(Clone)]
-struct Stop {
-    flag: Arc<AtomicBool>,
-    /// Called before a process is started.
-    begin: fn(),
+/// The kind `EXEC`.
+#[must_use]
+pub fn kind(launch: Launch) -> PolicyKind {
+    PolicyKind::made(NAME, ABOUT, move |options: Options, _: &_| {
+        options.check()?;
+        let program = Program::new(options, NAME.to_owned(), launch.clone());
+        Ok::<_, OptionsError>(Arc::new(Handle(Arc::new(program))) as Arc<dyn Driver>)
+    })
+}
+
+/// The kind `EXEC` for readers: each program is a name that stands for itself, and none is ever started.
+#[must_use]
+pub fn names() -> PolicyKind {
+    PolicyKind::made(NAME, ABOUT, |options: Options, _: &_| {
+        options.check()?;
+        Ok::<_, OptionsError>(Arc::new(Name(options)) as Arc<dyn Driver>)
+    })
+}
+
+/// A program that stands for itself.
+struct Name(Options);
+
+impl Driver for Name {
+    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        Err(PolicyError::Absent { policy: NAME.to_owned() })
+    }
+
+    fn basis(&self) -> Basis {
+        Basis::Absent
+    }
+
+    fn fingerprint(&self) -> Option<String> {
+        Some("a program that was not started".to_owned())
+    }
+
+    fn program(&self) -> Option<String> {
+        Some(self.0.in_words())
+    }
 }
 
 /// A program, and what is known of it.
@@ -45,7 +86,7 @@ struct Program {
     options: Options,
     /// Name of the policy in tables.
     label: String,
-    stop: Stop,
+    launch: Launch,
     /// Number of processes so far.
     started: AtomicU32,
     /// Number of the last trials, in a row, in which a process ended by itself.
@@ -56,11 +97,11 @@ struct Program {
 }
 
 impl Program {
-    fn new(options: Options, label: String, stop: Stop) -> Self {
+    fn new(options: Options, label: String, launch: Launch) -> Self {
         Self {
             options,
             label,
-            stop,
+            launch,
             started: AtomicU32::new(0),
             deaths: AtomicU32::new(0),
             greeting: OnceLock::new(),
@@ -70,11 +111,10 @@ impl Program {
 
     /// A process that has said hello.
     fn start(&self) -> Result<Process, ProgramError> {
-        (self.stop.begin)();
-        files(&self.options)?;
-        let command = &self.options.command;
-        let mut process = Process::start(command).map_err(|error| {
-            let program = command.first().cloned().unwrap_or_default();
+        (self.launch.begin)();
+        let permit = self.launch.consent.permit(&self.options)?;
+        let mut process = Process::start(permit, &self.options, &self.launch.guard).map_err(|error| {
+            let program = self.options.command.first().cloned().unwrap_or_default();
             match error.kind() {
                 std::io::ErrorKind::NotFound => Complaint::NoProgram(program),
                 _ => Complaint::NoStart { program, reason: error.to_string() },
@@ -82,10 +122,16 @@ impl Program {
         })?;
         let number = self.started.fetch_add(1, Ordering::Relaxed);
         let hello = Message::hello(&self.label, &self.options.options.0, number).line();
-        let until = Until { deadline: Deadline::NEVER, stop: &self.stop.flag };
-        let line = process.exchange(&hello, self.options.start(), until);
+        let until = Until { deadline: Deadline::NEVER, stop: &self.launch.stop };
+        let (longest, limit) = self.longest(self.options.start(), "start_s");
+        let mut line = process.exchange(&hello, longest.min(NOTICED), until);
+        if matches!(line, Err(NoLine::Silent)) && longest > NOTICED {
+            let (label, seconds) = (&self.label, longest.as_secs_f64());
+            self.launch.consent.tell(&format!("waiting up to {seconds} s for the hello of policy {label}"));
+            line = process.exchange(&[], longest.saturating_sub(NOTICED), until);
+        }
         let line = line.map_err(|no_line| {
-            let silent = Complaint::NoHello(self.options.start_s);
+            let silent = Complaint::NoHello(longest.as_secs_f64(), limit);
             self.failed(&mut process, no_line, silent)
         })?;
         let greeting = Greeting::read(&line).map_err(|complaint| {
@@ -100,6 +146,14 @@ impl Program {
         Ok(process)
     }
 
+    /// The longest wait for a line, and what limits it.
+    fn longest(&self, own: Duration, name: &'static str) -> (Duration, &'static str) {
+        match self.launch.longest.filter(|longest| *longest < own) {
+            Some(longest) => (longest, "--max-trial-s"),
+            None => (own, name),
+        }
+    }
+
     /// What a process does that sends no line; it is of no use any more.
     fn failed(&self, process: &mut Process, no_line: NoLine, silent: Complaint) -> ProgramError {
         let complaint = match no_line {
@@ -109,7 +163,11 @@ impl Program {
             NoLine::Refused(error) => Complaint::Unheard(error.to_string()),
             NoLine::Ended => {
                 self.deaths.fetch_add(1, Ordering::Relaxed);
-                Complaint::Ended(process.end())
+                let end = process.end();
+                match process.unended() {
+                    Some(line) => Complaint::Unended { end, line },
+                    None => Complaint::Ended(end),
+                }
             }
         };
         ProgramError { last_words: process.last_words(), ..complaint.into() }
@@ -138,7 +196,7 @@ impl Drop for Program {
     fn drop(&mut self) {
         let spare = self.spare.get_mut().unwrap_or_else(PoisonError::into_inner).take();
         let spare = spare.and_then(Result::ok).into_iter();
-        spare.for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.stop.flag));
+        spare.for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.launch.stop));
     }
 }
 
@@ -168,12 +226,22 @@ impl Driver for Handle {
         let Some(greeting) = self.0.greeting() else {
             return Some("a program that does not start".to_owned());
         };
-        Some(fingerprint(&self.0.options, greeting).unwrap_or_else(|complaint| complaint.to_string()))
+        let fingerprint = fingerprint(&self.0.options, greeting, &self.0.launch.stop);
+        Some(fingerprint.unwrap_or_else(|complaint| complaint.to_string()))
+    }
+
+    fn program(&self) -> Option<String> {
+        Some(self.0.options.in_words())
+    }
+
+    fn permission(&self) -> Result<(), PolicyError> {
+        let permit = self.0.launch.consent.permit(&self.0.options);
+        permit.map(drop).map_err(|complaint| ProgramError::from(complaint).into())
     }
 
     fn labelled(&self, label: &str) -> Option<Arc<dyn Driver>> {
-        let Program { options, stop, .. } = &*self.0;
-        let program = Program::new(options.clone(), label.to_owned(), stop.clone());
+        let Program { options, launch, .. } = &*self.0;
+        let program = Program::new(options.clone(), label.to_owned(), launch.clone());
         Some(Arc::new(Self(Arc::new(program))))
     }
 
@@ -206,15 +274,16 @@ impl ProgramSession {
         if line.len() > MOST_BYTES {
             return Err(self.lose(ProgramError::from(Complaint::LongQuestion), asked.question));
         }
-        let until = Until { deadline: asked.deadline, stop: &self.program.stop.flag };
-        let line = match process.exchange(&line, self.program.options.timeout(), until) {
+        let until = Until { deadline: asked.deadline, stop: &self.program.launch.stop };
+        let (longest, limit) = self.program.longest(self.program.options.timeout(), "timeout_s");
+        let line = match process.exchange(&line, longest, until) {
             Ok(line) => line,
             Err(NoLine::Late) => {
                 self.lost = Some(PolicyError::Late);
                 return Err(PolicyError::Late);
             }
             Err(no_line) => {
-                let silent = Complaint::Silent(self.program.options.timeout_s);
+                let silent = Complaint::Silent(longest.as_secs_f64(), limit);
                 let error = self.program.failed(&mut process, no_line, silent);
                 return Err(self.lose(error, asked.question));
             }
@@ -289,6 +358,6 @@ impl Drop for ProgramSession {
         let process = self.process.take();
         process
             .into_iter()
-            .for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.program.stop.flag));
+            .for_each(|process| process.dismiss(&Message::Bye {}.line(), &self.program.launch.stop));
     }
 }

@@ -2,16 +2,14 @@
 
 use std::fmt;
 
-use rne_core::{AssignmentError, PolicyError, SCHEMA_VERSION};
+use teaming::{AssignmentError, PolicyError, SCHEMA_VERSION};
 use thiserror::Error;
-
-use crate::process::End;
 
 /// Version of the lines between the command and a program.
 pub(crate) const PROTOCOL: u64 = 1;
 
 /// So many bytes of a line are shown.
-const SHOWN_BYTES: usize = 200;
+pub(crate) const SHOWN_BYTES: usize = 200;
 
 /// What is meant by a command that is a file of this folder.
 fn hint(program: &str) -> String {
@@ -32,14 +30,20 @@ pub(crate) enum Complaint {
     NoStart { program: String, reason: String },
     #[error("sources: no file matches {0:?}")]
     NoSource(String),
+    #[error("sources: {pattern:?} takes more than {most} {what}")]
+    Sources { pattern: String, most: usize, what: &'static str },
+    #[error("sources: the files have more than 256 MiB together")]
+    LargeSources,
+    #[error("it is a program that nobody has allowed: {command}; {hint}")]
+    NotAllowed { command: String, hint: &'static str },
     #[error("{path:?}, which decides its answers, cannot be read: {reason}")]
     Unreadable { path: String, reason: String },
-    #[error("it sent no hello within {0} s (start_s)")]
-    NoHello(f64),
+    #[error("it sent no hello within {0} s ({1})")]
+    NoHello(f64, &'static str),
     #[error("it was told to stop")]
     Stopped,
-    #[error("it did not answer within {0} s (timeout_s)")]
-    Silent(f64),
+    #[error("it did not answer within {0} s ({1})")]
+    Silent(f64, &'static str),
     #[error("{0}")]
     Ended(End),
     #[error("it cannot be heard: {0}")]
@@ -48,10 +52,18 @@ pub(crate) enum Complaint {
     LongLine,
     #[error("the question has more than 16 MiB")]
     LongQuestion,
+    #[error("it sent an empty line; each line must be a message")]
+    EmptyLine,
+    #[error("it sent a line that begins with a byte order mark; its output must be UTF-8 without one")]
+    Marked,
+    #[error("{end} after a line without a line end: {line:?}")]
+    Unended { end: End, line: String },
     #[error("it sent a line that is not UTF-8")]
     NotUtf8,
     #[error("it sent a line that is not JSON ({0}); what it prints for people belongs on its standard error")]
     NotJson(String),
+    #[error("it sent a line in which {0}")]
+    Twice(String),
     #[error("it sent {0}, which is no JSON; leave such a field out, or write null")]
     NotFinite(&'static str),
     #[error("it sent a message whose type is {found}, expected {expected}")]
@@ -72,6 +84,15 @@ pub(crate) enum Complaint {
     Assignment(AssignmentError),
     #[error("it gave up: {0}")]
     GaveUp(String),
+}
+
+/// How a process ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum End {
+    Status(i32),
+    Signal(i32),
+    /// It has closed its output and lives on.
+    Closed,
 }
 
 impl fmt::Display for End {
@@ -106,7 +127,8 @@ impl From<Complaint> for ProgramError {
 impl From<ProgramError> for PolicyError {
     fn from(error: ProgramError) -> Self {
         match *error.complaint {
-            Complaint::Silent(_) => Self::Slow(error.to_string()),
+            Complaint::Silent(..) => Self::Slow(error.to_string()),
+            Complaint::NotAllowed { command, hint } => Self::NotAllowed { command, hint },
             _ => Self::Other(error.to_string()),
         }
     }
@@ -118,7 +140,7 @@ impl fmt::Display for ProgramError {
             write!(f, "round {round}: ")?;
         }
         write!(f, "{}", self.complaint)?;
-        if let Some(line) = &self.line {
+        if let Some(line) = self.line.as_ref().filter(|line| !line.trim_ascii().is_empty()) {
             write!(f, "; its line: {}", shown(line))?;
         }
         if !self.last_words.is_empty() {

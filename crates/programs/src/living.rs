@@ -6,10 +6,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
+use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process, kill_process_group, waitid};
 
 /// How long a program may take to end after its bye.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(2);
+
+/// How long a guard may take to end its program.
+const GUARDED: Duration = Duration::from_millis(100);
 
 /// How often the end of a process is looked for.
 pub(crate) const LOOK: Duration = Duration::from_millis(2);
@@ -44,13 +47,26 @@ impl Group {
         self.0.is_none_or(|pid| waitid(WaitId::Pid(pid), how).is_ok_and(|status| status.is_some()))
     }
 
-    /// Kills all its processes. Its first process must not have been waited for before the first call.
+    /// Ends all its processes. Its first process must not have been waited for before the first call.
     pub(crate) fn kill(&mut self) {
         let Some(pid) = self.0.take() else { return };
-        let mut living = living();
-        let _ = kill_process_group(pid, Signal::KILL); // a group that is over needs no signal
-        living.remove(&pid.as_raw_nonzero().get());
+        end_group(pid);
+        living().remove(&pid.as_raw_nonzero().get());
     }
+}
+
+/// Ends a group. Its first process, the guard, may first end a program that has left the group. A group that
+/// is over needs no signal.
+fn end_group(group: Pid) {
+    let how = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
+    let is_over = || !waitid(WaitId::Pid(group), how).is_ok_and(|status| status.is_none());
+    if !is_over() && kill_process(group, Signal::TERM).is_ok() {
+        let late = Instant::now() + GUARDED;
+        while !is_over() && Instant::now() < late {
+            sleep(LOOK);
+        }
+    }
+    let _ = kill_process_group(group, Signal::KILL);
 }
 
 /// Ends every program that this process has started and that still lives. Programs that have heard their bye
@@ -61,11 +77,8 @@ pub fn end_all() {
         let waits = {
             let living = living();
             let is_late = Instant::now() > end;
-            for (group, _) in living.iter().filter(|(_, is_ending)| is_late || !**is_ending) {
-                if let Some(pid) = Pid::from_raw(*group) {
-                    let _ = kill_process_group(pid, Signal::KILL);
-                }
-            }
+            let ends = living.iter().filter(|(_, is_ending)| is_late || !**is_ending);
+            ends.filter_map(|(group, _)| Pid::from_raw(*group)).for_each(end_group);
             !is_late && living.values().any(|is_ending| *is_ending)
         };
         if !waits {

@@ -1,28 +1,38 @@
 //! The options of a program.
 
+use std::ffi::OsStr;
+use std::path::{Component, Path};
 use std::time::Duration;
 
 use ron_tree::{Node, Value as Ron};
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
+/// The policy's name.
+pub(crate) const NAME: &str = "EXEC";
+
+/// The variables of the environment that each program gets, besides those that begin with `USAR_`.
+const USUAL: [&str; 4] = ["PATH", "HOME", "LANG", "TMPDIR"];
+
 /// Longest time that may be given to a program, in seconds.
 const MOST_S: f64 = 86_400.0;
 
-/// How a program is started, and how long it may take.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub(crate) struct Options {
-    /// The program and its arguments.
-    pub(crate) command: Vec<String>,
-    /// What the program is told in the hello.
-    pub(crate) options: Json,
-    /// Longest time of an answer, in seconds.
-    pub(crate) timeout_s: f64,
-    /// Longest time until the hello, in seconds.
-    pub(crate) start_s: f64,
-    /// Files that decide answers, besides those that the command names: patterns such as `*.py`.
-    pub(crate) sources: Vec<String>,
+teaming::options! {
+    /// How a program is started, and how long it may take.
+    pub(crate) struct Options {
+        /// The program and its arguments.
+        pub(crate) command: Vec<String> = Vec::new(),
+        /// What the program is told in the hello.
+        pub(crate) options: Json = Json::default(),
+        /// Longest time of an answer, in seconds.
+        pub(crate) timeout_s: f64 = 10.0,
+        /// Longest time until the hello, in seconds.
+        pub(crate) start_s: f64 = 60.0,
+        /// Files that decide answers, besides those that the command names: patterns such as `*.py`.
+        pub(crate) sources: Vec<String> = Vec::new(),
+        /// Names of variables of the environment that the program gets, besides the usual ones.
+        pub(crate) env: Vec<String> = Vec::new(),
+    }
 }
 
 /// Options that cannot be used.
@@ -34,18 +44,8 @@ pub(crate) enum OptionsError {
     Time { field: &'static str },
     #[error("sources: {pattern:?} is no pattern of files: {reason}")]
     Pattern { pattern: String, reason: &'static str },
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            command: Vec::new(),
-            options: Json::default(),
-            timeout_s: 10.0,
-            start_s: 60.0,
-            sources: Vec::new(),
-        }
-    }
+    #[error("env: must be names of variables, found {0:?}")]
+    Variable(String),
 }
 
 impl Options {
@@ -60,10 +60,32 @@ impl Options {
             }
         }
         for pattern in &self.sources {
-            glob::Pattern::new(pattern)
-                .map_err(|error| OptionsError::Pattern { pattern: pattern.clone(), reason: error.msg })?;
+            if let Some(reason) = broken_rule(pattern) {
+                return Err(OptionsError::Pattern { pattern: pattern.clone(), reason });
+            }
         }
-        Ok(())
+        let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let is_name = |name: &&String| !name.is_empty() && name.chars().all(is_part);
+        match self.env.iter().find(|name| !is_name(name)) {
+            Some(name) => Err(OptionsError::Variable(name.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether the program gets a variable of the environment.
+    pub(crate) fn passes(&self, name: &OsStr) -> bool {
+        let Some(name) = name.to_str() else { return false };
+        USUAL.contains(&name) || name.starts_with("USAR_") || self.env.iter().any(|own| own == name)
+    }
+
+    /// The command as one visible line of a shell, and the variables that it asks for.
+    pub(crate) fn in_words(&self) -> String {
+        let words: Vec<String> = self.command.iter().map(|word| quoted(word)).collect();
+        let env = match &self.env[..] {
+            [] => String::new(),
+            names => format!(" (and it asks for {} of the environment)", names.join(", ")),
+        };
+        ron_tree::visible(&(words.join(" ") + &env)).replace('\n', "\\n")
     }
 
     /// Longest time of an answer.
@@ -75,6 +97,25 @@ impl Options {
     pub(crate) fn start(&self) -> Duration {
         Duration::from_secs_f64(self.start_s)
     }
+}
+
+/// Why a pattern names no files in the working folder, if it does not.
+fn broken_rule(pattern: &str) -> Option<&'static str> {
+    let is_inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+    if pattern.is_empty() || !Path::new(pattern).components().all(is_inside) {
+        return Some("it must be of files in the folder in which the program starts");
+    }
+    glob::Pattern::new(pattern).err().map(|error| error.msg)
+}
+
+/// A word as a shell takes it.
+#[must_use]
+pub fn quoted(text: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./,:=+%".contains(c);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        return text.to_owned();
+    }
+    format!("'{}'", text.replace('\'', "'\\''"))
 }
 
 /// A value in RON as JSON. Structs and maps are objects, lists and tuples are arrays, `None` and `()` are
@@ -161,5 +202,10 @@ mod tests {
         assert_eq!(read("18446744073709551615"), json!(u64::MAX));
         let again = Node::of(&Json(read("(a: [1, ()], b: {\"c\": -0.5})"))).unwrap().to_string();
         assert_eq!(read(&again), json!({"a": [1, null], "b": {"c": -0.5}}));
+    }
+
+    #[test]
+    fn a_word_is_quoted_for_a_shell_where_it_must_be() {
+        assert_eq!([quoted("a/b.ron"), quoted("it's")], ["a/b.ron", "'it'\\''s'"]);
     }
 }

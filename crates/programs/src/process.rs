@@ -1,25 +1,34 @@
 //! One process of a program: started in a group of its own, asked line by line, and ended.
 
 use std::collections::VecDeque;
+use std::ffi::OsString;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Write};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
-use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::path::Path;
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{JoinHandle, sleep};
 use std::time::{Duration, Instant};
 
-use rne_core::Deadline;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::{Errno, ioctl_fionbio};
+use teaming::Deadline;
 
+use crate::consent::Permit;
+use crate::error::{End, SHOWN_BYTES};
+use crate::guard::guarded;
 use crate::living::{Group, LOOK, PATIENCE};
+use crate::options::Options;
 
 /// Longest line, in bytes.
 pub(crate) const MOST_BYTES: usize = 16 << 20;
 
 /// How often the deadline is looked at.
 const PERIOD: Duration = Duration::from_millis(50);
+
+/// A longer time between two looks is one in which this process slept.
+const LONGEST_LOOK: Duration = Duration::from_secs(5);
 
 /// How long a process may take to exit once it has closed its output, and its last words to arrive.
 const LAST_WORDS: Duration = Duration::from_millis(200);
@@ -67,15 +76,6 @@ impl From<Errno> for NoLine {
     }
 }
 
-/// How a process ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum End {
-    Status(i32),
-    Signal(i32),
-    /// It has closed its output and lives on.
-    Closed,
-}
-
 /// A process at work.
 pub(crate) struct Process {
     child: Child,
@@ -89,11 +89,15 @@ pub(crate) struct Process {
 }
 
 impl Process {
-    /// Starts a command in a group of its own.
-    pub(crate) fn start(command: &[String]) -> std::io::Result<Self> {
-        let (program, arguments) = command.split_first().ok_or(ErrorKind::InvalidInput)?;
-        let mut command = Command::new(program);
-        command.args(arguments).process_group(0);
+    /// Starts a command in a group of its own, behind a guard.
+    pub(crate) fn start(_: Permit, options: &Options, guard: &[OsString]) -> std::io::Result<Self> {
+        let program = options.command.first().ok_or(ErrorKind::InvalidInput)?;
+        if !is_there(program) {
+            return Err(ErrorKind::NotFound.into());
+        }
+        let mut command = guarded(guard, &options.command);
+        command.process_group(0).env_clear();
+        command.envs(std::env::vars_os().filter(|(name, _)| options.passes(name)));
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn()?;
         let group = Group::of(&child);
@@ -119,7 +123,7 @@ impl Process {
         patience: Duration,
         until: Until<'_>,
     ) -> Result<Vec<u8>, NoLine> {
-        let end = Instant::now() + patience;
+        let (mut left, mut looked) = (patience, Instant::now());
         let mut unsent = line;
         loop {
             if unsent.is_empty()
@@ -133,7 +137,9 @@ impl Process {
             if until.is_over() {
                 return Err(NoLine::Late);
             }
-            let left = end.saturating_duration_since(Instant::now());
+            // What this process sleeps, as it does after a SIGSTOP, does not count.
+            left = left.saturating_sub(looked.elapsed().min(LONGEST_LOOK));
+            looked = Instant::now();
             if left.is_zero() {
                 return Err(NoLine::Silent);
             }
@@ -202,6 +208,12 @@ impl Process {
         Some(line)
     }
 
+    /// The start of a line that has no end, if there is one.
+    pub(crate) fn unended(&self) -> Option<String> {
+        let shown = &self.received[..self.received.len().min(SHOWN_BYTES)];
+        (!shown.is_empty()).then(|| String::from_utf8_lossy(shown).into_owned())
+    }
+
     /// How the process ended, which has closed its output. Kills what is left of its group.
     pub(crate) fn end(&mut self) -> End {
         self.wait_for_end(LAST_WORDS);
@@ -242,6 +254,13 @@ impl Drop for Process {
         self.group.kill();
         let _ = self.child.wait();
     }
+}
+
+/// Whether a program is where the system looks for it.
+fn is_there(program: &str) -> bool {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    program.contains('/') && Path::new(program).exists()
+        || !program.contains('/') && std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
 }
 
 /// What can be done with a process now.

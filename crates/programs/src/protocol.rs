@@ -1,11 +1,12 @@
 //! Protocol 1: each message is one line with a JSON object. Answers may be written as R, MATLAB and Lua write
 //! them: whole numbers as `5.0`, a group of one as a number, an empty group as null.
 
-use rne_core::{Decision, Question, SCHEMA_VERSION};
 use serde::Serialize;
 use serde_json::{Map, Value};
+use teaming::{Decision, Question, SCHEMA_VERSION};
 
 use crate::error::{Complaint, PROTOCOL};
+use crate::unique::Unique;
 
 /// Largest number up to which every whole number is a number of JSON in every language.
 const MOST_WHOLE: f64 = 9_007_199_254_740_992.0;
@@ -142,8 +143,17 @@ fn lists_of_lists(assignment: &mut Map<String, Value>) {
 /// The object in a line, with whole numbers as such.
 fn object(line: &[u8]) -> Result<Map<String, Value>, Complaint> {
     let text = std::str::from_utf8(line).map_err(|_| Complaint::NotUtf8)?;
-    let value = serde_json::from_str(text).map_err(|error| {
+    if text.trim().is_empty() {
+        return Err(Complaint::EmptyLine);
+    }
+    if text.starts_with('\u{feff}') {
+        return Err(Complaint::Marked);
+    }
+    let Unique(value) = serde_json::from_str(text).map_err(|error| {
         let reason = error.to_string().replace(" at line 1 column", " at byte");
+        if reason.starts_with("the field ") {
+            return Complaint::Twice(reason);
+        }
         not_finite(text).map_or(Complaint::NotJson(reason), Complaint::NotFinite)
     })?;
     match whole(value) {

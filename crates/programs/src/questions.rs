@@ -6,10 +6,9 @@ pub use evidence::with_evidence;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::question::hardest_first;
-use rne_core::{
-    GroupSizes, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
-};
+use rne_core::NeedVector;
+use teaming::question::hardest_first;
+use teaming::{GroupSizes, Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
 
 /// Names of the needs.
 const NEEDS: [&str; 4] = ["hp", "v", "eng", "cap"];

@@ -1,4 +1,5 @@
-//! Whether the parts of a recording fit each other: no part names a task, a role or a robot that is not there.
+//! Whether the parts of a recording fit each other: no part names a task, a role or a robot that is not
+//! there.
 
 use ron_tree::Problem;
 use usar_sim::fit::Tables;

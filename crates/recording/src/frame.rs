@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use rne_core::TaskId;
 use serde::Serialize;
+use teaming::TaskId;
 use usar_sim::belief::Belief;
 use usar_sim::conflict::DelayCause;
 use usar_sim::mission::Activity;

@@ -37,7 +37,6 @@ mod numbers;
 mod reader;
 mod rows;
 mod segment;
-mod story;
 mod table;
 mod trust;
 mod words;
@@ -47,10 +46,9 @@ pub use error::ReadError;
 pub use frame::{Frame, GroupFrame, Motion, MovedDebris, RescueeFrame, RobotFrame, RobotState, Route};
 pub use header::{Codes, Header, RobotPlace, ScenarioText, TaskPlace, VERSION, World};
 pub use reader::{Recording, TimedDecision};
-pub use story::Story;
 pub use table::Table;
 pub use trust::Trust;
-pub use words::{Names, ToldEvent, robots_in_words, told};
+pub use words::{Names, ToldEvent, told};
 pub use writer::{DEFAULT_FPS, Options, Recorder, record};
 
 /// The programs in the README compile and run.

@@ -1,9 +1,9 @@
 //! Reads recordings.
 
-use rne_core::{Decision, Member, Question};
 use ron_tree::{Problem, without_types};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use teaming::{Decision, Member, Question};
 use usar_sim::event::Event;
 use usar_sim::fit::is_result;
 use usar_sim::record::TrialRecord;

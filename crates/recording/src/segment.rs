@@ -167,8 +167,8 @@ impl Segment {
         Ok(segment)
     }
 
-    /// Checks that every entry is valid, so that every frame can be read, and names only robots, rescuees, debris
-    /// and tasks that are there. A group may know of zones that are not there.
+    /// Checks that every entry is valid, so that every frame can be read, and names only robots, rescuees,
+    /// debris and tasks that are there. A group may know of zones that are not there.
     fn check_entries(&self, counts: [usize; STREAMS.len()]) -> Result<(), NotNumbers> {
         let [robots, _, rescuees, debris, groups, _] = counts;
         let is_there = |numbers: &[Option<u32>], count: usize| {

@@ -3,8 +3,8 @@
 
 use std::io::{self, Write};
 
-use rne_core::{Member, Question, TaskId};
 use tables::{About, Cell, Column, Columns, Csv, Kind, abouts, columns};
+use teaming::{Member, Question, TaskId};
 use usar_sim::conflict::DelayCause;
 use usar_sim::scenario::{Measure, NeedFile};
 

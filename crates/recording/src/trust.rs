@@ -1,7 +1,7 @@
 //! The matrices of trust at a decision: between robots, and between groups.
 
-use rne_core::{MadeMeasure, TeamTrust};
 use serde::{Deserialize, Serialize};
+use teaming::{MadeMeasure, TeamTrust};
 use usar_sim::record::DecisionRecord;
 
 /// A larger team has a matrix of its groups only.

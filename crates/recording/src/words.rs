@@ -92,7 +92,7 @@ fn snake(name: &str) -> String {
 }
 
 /// Robots by their ids, as in `robots 0, 1 and 4`.
-pub fn robots_in_words(robots: &[u32]) -> String {
+fn robots_in_words(robots: &[u32]) -> String {
     match robots {
         [] => "no robot".to_owned(),
         [one] => format!("robot {one}"),
@@ -203,7 +203,7 @@ pub fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> + '_ {
 
 #[cfg(test)]
 mod tests {
-    use rne_core::TaskId;
+    use teaming::TaskId;
     use usar_sim::scenario::DebrisShape;
 
     use super::*;

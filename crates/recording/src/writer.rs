@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use rne_core::{MadeMeasure, Session};
 use serde::Serialize;
+use teaming::{MadeMeasure, Session};
 use usar_sim::event::Event;
 use usar_sim::record::{DecisionRecord, TrialRecord};
 use usar_sim::simulation::Simulation;

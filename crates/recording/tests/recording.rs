@@ -5,7 +5,7 @@ use std::path::Path;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use recording::{Options, ReadError, Recorder, Recording, record};
-use rne_core::{Session, TaskId};
+use teaming::{Session, TaskId};
 use usar_sim::mission::Activity;
 use usar_sim::scenario::{Measure, Scenario};
 use usar_sim::simulation::Simulation;

@@ -11,12 +11,13 @@ use experiments::sweep::folder::Folder;
 use experiments::sweep::host::Hosts;
 use experiments::sweep::names::PLOTS;
 use experiments::sweep::owned::Report;
+use tables::or_dash;
 
 use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
 use crate::figures::{Part, figures, is_quiet};
 use crate::maps::{Map, ShownTrial, trails_map, world_map};
-use crate::table::{between, moments, or_dash};
+use crate::table::{between, moments};
 use crate::wanted::Wanted;
 
 #[derive(Template)]
@@ -142,10 +143,7 @@ pub(crate) fn write_case(
         page.title = title;
     }
     files.add(file, &page.render().map_err(Failure::run)?)?;
-    for Figure { name, svg, csv, .. } in figures {
-        files.add(format!("{PLOTS}/{prefix}{name}.svg"), &svg)?;
-        files.add(format!("{PLOTS}/{prefix}{name}.csv"), &csv)?;
-    }
+    figures.iter().try_for_each(|figure| figure.add_to(files, &prefix))?;
     for Map { name, svg, .. } in maps {
         files.add(format!("{PLOTS}/{prefix}{name}.svg"), &svg)?;
     }

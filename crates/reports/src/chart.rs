@@ -4,7 +4,7 @@ use kuva::plot::scatter::MarkerShape;
 use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::plots::Plot;
 
-use crate::drawing::{Drawing, Panel, colour, layout};
+use crate::drawing::{Drawing, Panel, colour, layout, within};
 
 /// Signs of the series with points, in their order, so that they are told apart without colour.
 const SIGNS: [MarkerShape; 6] = [
@@ -48,13 +48,8 @@ pub fn chart(labels: Labels, series: &[Series]) -> String {
         let values = series.iter().flat_map(|series| series.points.iter().map(move |point| point[of]));
         1.05 * values.fold(0.0, f64::max)
     };
-    let layout = layout(&plots, labels.title)
-        .with_x_label(labels.x)
-        .with_y_label(labels.y)
-        .with_x_axis_min(0.0)
-        .with_x_axis_max(largest(0))
-        .with_y_axis_min(0.0)
-        .with_y_axis_max(largest(1));
+    let layout = layout(&plots, labels.title).with_x_label(labels.x).with_y_label(labels.y);
+    let layout = within(layout, [0.0, largest(0)], [0.0, largest(1)]);
     Drawing::new(vec![Panel { metric: String::new(), plots, layout }], 1, [720.0, 420.0]).svg()
 }
 

@@ -4,7 +4,7 @@ use experiments::Failure;
 use experiments::deceit::{Borne, Deceit};
 
 use crate::drawing::{
-    Drawing, Panel, Sketch, difference_heat_map, forest_plot, from_top, interval_panel, layout, table,
+    Drawing, Panel, Sketch, difference_heat_map, forest_plot, from_top, interval_panel, layout,
 };
 
 /// Colours of a breakdown that is shown, and of one that is not.
@@ -65,7 +65,7 @@ fn above_draw(found: &Deceit) -> Result<Sketch, Failure> {
         title: format!("{} above a draw", found.metric),
         caption: format!("Mean difference from {} by number of liars, in one scale", found.draw),
         drawing: Drawing::new(panels, 2, size(found, 46.0 * found.counts.len() as f64 + 150.0)),
-        csv: table(&["policy", "lie", "liars", "difference", "low", "high"], rows)?,
+        csv: tables::csv(["policy", "lie", "liars", "difference", "low", "high"], rows)?,
     })
 }
 
@@ -99,7 +99,7 @@ fn breakdown(found: &Deceit) -> Result<Sketch, Failure> {
             (blue); policies without room among honest robots are left out"
                 .to_owned(),
         drawing: Drawing::new(panels, 2, size(found, 330.0)),
-        csv: table(&["policy", "lie", "safe", "broken"], rows)?,
+        csv: tables::csv(["policy", "lie", "safe", "broken"], rows)?,
     })
 }
 

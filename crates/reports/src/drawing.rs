@@ -4,6 +4,8 @@ use std::sync::Arc;
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, PolicySpec};
+use experiments::sweep::names::PLOTS;
+use experiments::sweep::owned::Report;
 use kuva::backend::svg::SvgBackend;
 use kuva::plot::{ColorMap, ForestPlot, Heatmap, LinePlot, LineStyle};
 use kuva::render::figure::Figure as Panels;
@@ -69,8 +71,8 @@ impl Drawing {
         self.laid_out(columns, cell)
     }
 
-    /// The drawing for a column of this width, in units in which `TICK` is readable; as high as is asked for, or
-    /// with panels of the report's proportions. Each row has as many panels side by side as can be read.
+    /// The drawing for a column of this width, in units in which `TICK` is readable; as high as is asked for,
+    /// or with panels of the report's proportions. Each row has as many panels side by side as can be read.
     pub fn svg_for(mut self, width: f64, height: Option<f64>) -> String {
         let [cell_width, cell_height] = self.cell;
         let panels = self.panels.len().max(1);
@@ -124,6 +126,21 @@ pub(crate) struct Figure {
     pub svg: String,
     /// The numbers, as a table.
     pub csv: String,
+}
+
+impl Figure {
+    /// Adds its files to a report, with a prefix before their names.
+    pub fn add_to(&self, files: &mut Report, prefix: &str) -> Result<(), Failure> {
+        let Self { name, svg, csv, .. } = self;
+        files.add(format!("{PLOTS}/{prefix}{name}.svg"), svg)?;
+        files.add(format!("{PLOTS}/{prefix}{name}.csv"), csv)
+    }
+}
+
+/// A layout whose axes have these ends.
+pub(crate) fn within(layout: Layout, x: [f64; 2], y: [f64; 2]) -> Layout {
+    let layout = layout.with_x_axis_min(x[0]).with_x_axis_max(x[1]);
+    layout.with_y_axis_min(y[0]).with_y_axis_max(y[1])
 }
 
 /// One panel: its plots and its axes.
@@ -210,16 +227,10 @@ pub(crate) fn line_panel(lines: &[Line], metric: &str, title: &str, x: &str, y: 
         )
     };
     let plots: Vec<Plot> = lines.iter().filter(|(_, _, points)| !points.is_empty()).map(plot).collect();
-    let [low, high] =
+    let heights =
         range(all().flat_map(|(_, mean, half)| [(mean - half).max(0.0_f64.min(*mean)), mean + half]));
-    let [left, right] = range(all().map(|(x, _, _)| *x));
-    let layout = layout(&plots, title)
-        .with_x_label(x)
-        .with_y_label(y)
-        .with_x_axis_min(left)
-        .with_x_axis_max(right)
-        .with_y_axis_min(low)
-        .with_y_axis_max(high);
+    let layout = layout(&plots, title).with_x_label(x).with_y_label(y);
+    let layout = within(layout, range(all().map(|(x, _, _)| *x)), heights);
     Some(Panel { metric: metric.to_owned(), plots, layout })
 }
 
@@ -312,37 +323,4 @@ fn with_view_box(svg: &str) -> String {
         }
         _ => svg.to_owned(),
     }
-}
-
-/// A table in CSV that is written row by row.
-pub(crate) struct Rows(csv::Writer<Vec<u8>>);
-
-impl Rows {
-    pub fn new(header: &[&str]) -> Result<Self, Failure> {
-        let mut rows = Self(csv::Writer::from_writer(Vec::new()));
-        rows.push(header)?;
-        Ok(rows)
-    }
-
-    pub fn push(&mut self, row: &[impl AsRef<[u8]>]) -> Result<(), Failure> {
-        self.0.write_record(row).map_err(Failure::run)
-    }
-
-    pub fn finish(self) -> Result<String, Failure> {
-        String::from_utf8(self.0.into_inner().map_err(Failure::run)?).map_err(Failure::run)
-    }
-}
-
-/// The names of columns in the first line of a table.
-pub(crate) fn columns(header: &'static str) -> Vec<&'static str> {
-    header.split(',').collect()
-}
-
-/// A table from its header and rows.
-pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Result<String, Failure> {
-    let mut table = Rows::new(header)?;
-    for row in rows {
-        table.push(&row)?;
-    }
-    table.finish()
 }

@@ -1,13 +1,13 @@
 //! A study of sensitivity as a figure, tables, and a ranking in words.
 
-use comfy_table::{Cell, Table};
 use experiments::Failure;
 use experiments::comparison::short;
 use experiments::explore::{CHANCE, Index, Outcome, Row};
 use statistics::sensitivity::Known;
+use tables::{Entry, Table, right};
 
 use crate::figures::sensitivity;
-use crate::table::{between, headed, right};
+use crate::table::between;
 
 /// The drawing of a study's indices, and the table of the numbers behind it.
 ///
@@ -21,23 +21,22 @@ pub fn sensitivity_figure(rows: &[Row]) -> Result<[Vec<u8>; 2], Failure> {
 /// The indices of one outcome.
 pub fn sensitivity_table(rows: &[&Row]) -> Table {
     let is_of_effects = rows.iter().any(|row| matches!(row.index, Index::Effects { .. }));
-    let mut table = if is_of_effects {
-        headed(["parameter", "mu*", "95 % interval", "mu", "95 % interval", "sigma", "beyond chance"])
+    let header = if is_of_effects {
+        "parameter,mu*,95 % interval,mu,95 % interval,sigma,beyond chance"
     } else {
-        headed(["parameter", "alone", "95 % interval", "in all", "95 % interval"])
+        "parameter,alone,95 % interval,in all,95 % interval"
     };
-    for row in rows {
-        let mut cells = vec![Cell::new(&row.parameter)];
+    let row = |row: &&Row| {
+        let mut cells = vec![Entry::from(&row.parameter)];
         let mut add = |known: Known| {
-            cells.push(right(&short(known.value)));
-            cells.push(right(&between(known.interval)));
+            cells.extend([right(short(known.value)), right(between(known.interval))]);
         };
         match row.index {
             Index::Effects { effects, beyond } => {
                 add(effects.size);
                 add(effects.mean);
-                cells.push(right(&short(effects.spread.value)));
-                cells.push(right(&between(beyond.and_then(|beyond| beyond.interval))));
+                cells.push(right(short(effects.spread.value)));
+                cells.push(right(between(beyond.and_then(|beyond| beyond.interval))));
             }
             Index::Shares(shares) => {
                 add(shares.first);
@@ -48,9 +47,9 @@ pub fn sensitivity_table(rows: &[&Row]) -> Table {
                 cells.extend([right("-"), right("-")]);
             }
         }
-        table.add_row(cells);
-    }
-    table
+        cells
+    };
+    Table::of(header.split(','), rows.iter().map(row))
 }
 
 /// Most parameters whose effects a sentence tells; the others are named.

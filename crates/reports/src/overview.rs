@@ -14,7 +14,7 @@ use experiments::sweep::owned::Report;
 use crate::case::Compared;
 use crate::drawing::Figure;
 use crate::figures::along_axes;
-use crate::table::{Lines, differences_table, effects_table};
+use crate::table::{differences_table, effects_table};
 use crate::wanted::Wanted;
 
 #[derive(Template)]
@@ -50,6 +50,9 @@ struct Line {
     answer: Option<String>,
 }
 
+/// The texts of a table: its header and its rows.
+type Lines = (Vec<String>, Vec<Vec<String>>);
+
 /// The changes of one metric along the axes.
 struct Change<'a> {
     metric: &'a str,
@@ -64,8 +67,8 @@ impl<'a> Change<'a> {
             comparisons.iter().filter(|one| one.metric == metric.name).collect();
         Self {
             metric: &metric.name,
-            means: Lines::of(&effects_table(&effects)),
-            differences: Lines::of(&differences_table(&comparisons)),
+            means: effects_table(&effects).lines(),
+            differences: differences_table(&comparisons).lines(),
         }
     }
 }
@@ -89,6 +92,7 @@ pub(crate) fn write_overview(
     };
     let effects = effects(folder, &wanted.asked.metrics, wanted.asked.choice())?;
     let asked = wanted.asked.metrics.iter().map(|metric| &experiment.metrics[*metric]);
+    let alone = (experiment.policies.len() == 1).then_some("one policy: there is nothing to compare.");
     let line = |case: usize| {
         let here: Vec<&Comparison> =
             comparisons.iter().filter(|comparison| comparison.case == case + 1).collect();
@@ -97,7 +101,7 @@ pub(crate) fn write_overview(
         Line {
             place: experiment.describe(&experiment.cases[case]).trim_end_matches(": ").to_owned(),
             page,
-            answer: answer(&here),
+            answer: answer(&here).or_else(|| alone.map(str::to_owned)),
         }
     };
     let figures = along_axes(folder, comparisons)?;
@@ -124,9 +128,5 @@ pub(crate) fn write_overview(
         figures: &figures,
     };
     files.add(REPORT.to_owned(), &overview.render().map_err(Failure::run)?)?;
-    for Figure { name, svg, csv, .. } in figures {
-        files.add(format!("{PLOTS}/{name}.svg"), &svg)?;
-        files.add(format!("{PLOTS}/{name}.csv"), &csv)?;
-    }
-    Ok(())
+    figures.iter().try_for_each(|figure| figure.add_to(files, ""))
 }

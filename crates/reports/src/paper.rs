@@ -41,7 +41,10 @@ pub fn column_figure(
     let sketches = all(folder, wanted)?;
     let names: Vec<String> = sketches.iter().map(|sketch| sketch.name.clone()).collect();
     let mut sketch = sketches.into_iter().find(|sketch| sketch.name == name).ok_or_else(|| {
-        Failure::input(format!("NAME: must be a figure of this sweep ({}), found {name:?}", names.join(", ")))
+        Failure::input(format!(
+            "--figure: must be a figure of this sweep ({}), found {name:?}",
+            names.join(", ")
+        ))
     })?;
     if let Some(metric) = &look.metric {
         sketch.drawing.keep(metric);

@@ -9,9 +9,8 @@ use crate::error::NeedsError;
 use crate::needs::{check_entries, check_probabilities};
 
 /// The four levels, lowest first.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum NeedLevel {
     /// Health, speed and sensing range (Eq. 3).
     Safety,

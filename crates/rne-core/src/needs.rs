@@ -1,13 +1,13 @@
 //! Needs vectors, weights and the distributions made of them (paper: Section III, Eqs. 8 and 9).
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::NeedsError;
 
 /// The current state of one robot's needs: any number (>= 1) of finite values >= 0, each in a unit of its
 /// own.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(try_from = "Vec<f64>")]
 pub struct NeedVector(Vec<f64>);
 

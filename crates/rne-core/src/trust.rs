@@ -3,7 +3,6 @@
 
 use std::cmp::Ordering;
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Relative Needs Entropy of one robot or group towards another, in nats. Lower means more trust; it is not
@@ -12,7 +11,8 @@ use serde::{Deserialize, Serialize};
 /// Users should know two properties. RNE is blind to magnitude: proportional needs give 0, so that a nearly
 /// dead robot and a fresh one can trust each other fully. And between robots of one type whose speed and
 /// ranges scale with HP it sees little but the ratio of energy to HP.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum RelativeNeedsEntropy {
     /// A finite value >= 0, in nats.
     Finite(f64),

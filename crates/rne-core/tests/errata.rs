@@ -1,4 +1,4 @@
-//! `docs/errata.md`, line by line: each printed number of the paper beside the exact one.
+//! `studies/yang2021/docs/errata.md`, line by line: each printed number of the paper beside the exact one.
 
 use rne_core::{NeedDistribution, NeedVector, NeedWeights, relative_entropy};
 

@@ -50,8 +50,8 @@ pub fn open(path: &Path, most: u64) -> Result<(fs::File, u64), ReadError> {
     }
 }
 
-/// What has the most similar name in the folder of a missing path, as the end of a sentence; empty if there is
-/// none.
+/// What has the most similar name in the folder of a missing path, as the end of a sentence; empty if there
+/// is none.
 pub fn meant(path: &Path) -> String {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();

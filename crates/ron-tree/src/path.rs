@@ -32,8 +32,8 @@ impl Node {
         positions.into_iter().try_fold(self, |node, position| node.child_mut(position))
     }
 
-    /// The path with indices instead of names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`. The part that does
-    /// not exist stays as it is.
+    /// The path with indices instead of names, `tasks[0].grid[1]` for `tasks.hard.grid[1]`. The part that
+    /// does not exist stays as it is.
     pub fn canonical(&self, path: &str) -> String {
         let trail = self.trail(path);
         let steps = trail.nodes.iter().zip(&trail.positions);

@@ -13,7 +13,7 @@
 //! use store::{Header, Log};
 //!
 //! let header = Header::new("count", "to three");
-//! let lock = Arc::new(Lock::of_folder(folder, &mut |note| eprintln!("{note}"))?);
+//! let lock = Arc::new(Lock::of_folder(folder)?);
 //! let (mut log, done) = Log::resume::<u32>(&folder.join("count.jsonl"), &header, lock)?;
 //! for number in done.len() as u32 + 1..=3 {
 //!     log.add(&[number])?; // on disk when it returns

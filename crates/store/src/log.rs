@@ -108,8 +108,8 @@ pub struct Log<M = File> {
     length: u64,
     /// Whether the file may be longer than its sound part.
     is_torn: bool,
-    /// Absent if the log was opened for reading.
-    lock: Option<Arc<Lock>>,
+    /// Held as long as the log is open; absent if it was opened for reading.
+    _lock: Option<Arc<Lock>>,
 }
 
 /// The line of an entry.
@@ -186,7 +186,7 @@ impl Log {
         let file =
             options.read(true).write(true).create(true).truncate(false).open(path).map_err(at(path))?;
         files::sync_folder(path.parent().unwrap_or(path))?;
-        let log = Log { path: path.to_owned(), file, length: 0, is_torn: true, lock: Some(lock) };
+        let log = Log { path: path.to_owned(), file, length: 0, is_torn: true, _lock: Some(lock) };
         log.begin(header, found)
     }
 
@@ -201,7 +201,7 @@ impl Log {
         found: impl FnMut(&Line) -> Result<(), Box<dyn Error>>,
     ) -> Result<Self, Failure> {
         let file = files::open(path).map_err(at(path))?;
-        let mut log = Log { path: path.to_owned(), file, length: 0, is_torn: true, lock: None };
+        let mut log = Log { path: path.to_owned(), file, length: 0, is_torn: true, _lock: None };
         log.scan(header, found)?;
         Ok(log)
     }
@@ -218,7 +218,7 @@ impl<M: Medium> Log<M> {
         header: &Header,
         found: impl FnMut(&Line) -> Result<(), Box<dyn Error>>,
     ) -> Result<Self, Failure> {
-        let log = Self { path: name.to_owned(), file: medium, length: 0, is_torn: true, lock: None };
+        let log = Self { path: name.to_owned(), file: medium, length: 0, is_torn: true, _lock: None };
         log.begin(header, found)
     }
 
@@ -277,7 +277,7 @@ impl<M: Medium> Log<M> {
     /// Adds entries. They are on disk when this returns.
     ///
     /// # Errors
-    /// The disk does not take them, or another process has taken over the lock. The log is then unchanged.
+    /// The disk does not take them. The log is then unchanged.
     pub fn add(&mut self, entries: &[impl Serialize]) -> Result<(), Failure> {
         let lines = entries.iter().map(checked).collect::<Result<Vec<_>, _>>()?;
         self.append(&lines.concat()).map(drop)
@@ -289,7 +289,6 @@ impl<M: Medium> Log<M> {
     /// # Errors
     /// Those of [`Log::add`].
     pub fn append(&mut self, lines: &[u8]) -> Result<u64, Failure> {
-        self.lock.as_ref().map_or(Ok(()), |lock| lock.check())?;
         let start = self.length;
         let mut write = || {
             if self.is_torn {

@@ -1,8 +1,8 @@
-//! This machine: its name, its job, its disks, its clock and its processes.
+//! This machine: its name, its job, its disks and its clock.
 
 use std::path::Path;
 
-use sysinfo::{DiskRefreshKind, Disks, Pid, ProcessesToUpdate, System};
+use sysinfo::{DiskRefreshKind, Disks, System};
 
 /// The name of this machine.
 pub fn name() -> String {
@@ -33,13 +33,4 @@ pub(crate) fn variable(name: &str) -> Option<String> {
 pub fn now() -> String {
     let now = jiff::Timestamp::now();
     now.round(jiff::Unit::Second).unwrap_or(now).to_string()
-}
-
-/// Whether a process with this number runs on this machine.
-pub(crate) fn is_running(process: u32) -> bool {
-    let process = Pid::from_u32(process);
-    // If unknown, the process is assumed to be running.
-    let Ok(mut system) = System::new() else { return true };
-    system.refresh_processes(ProcessesToUpdate::Some(&[process]), true);
-    system.process(process).is_some()
 }

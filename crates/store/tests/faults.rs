@@ -204,7 +204,7 @@ fn a_file_of_something_else_is_refused_and_left_alone() {
         (line(header()) + "1\n", "log:2: the checksum does not match"),
     ] {
         std::fs::write(&path, &text).unwrap();
-        let lock = store::lock::Lock::of_file(&path, &mut |_| {}).unwrap();
+        let lock = store::lock::Lock::of_file(&path).unwrap();
         let refused = Log::resume::<String>(&path, &header(), lock.into()).map(drop).unwrap_err();
         assert!(refused.to_string().contains(says), "{refused}");
         assert_eq!(std::fs::read_to_string(&path).unwrap(), text);
@@ -216,7 +216,7 @@ fn a_file_of_something_else_is_refused_and_left_alone() {
 fn a_log_has_one_writer() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("log");
-    let take = || store::lock::Lock::of_file(&path, &mut |_| {});
+    let take = || store::lock::Lock::of_file(&path);
     let held = take().unwrap();
     let refused = take().unwrap_err().to_string();
     assert!(refused.contains("log: another process is at work on this file"), "{refused}");

@@ -1,5 +1,6 @@
 //! Tables whose columns are declared once: name, type, unit, meaning, and how a row is read. The file in CSV,
-//! its dictionary and its other forms follow from it.
+//! its dictionary and its other forms follow from it. A [`Table`] has texts, as people read them, and is
+//! written in any [`Format`].
 //!
 //! ```
 //! use tables::{Cell, Columns, Csv, abouts, columns};
@@ -17,10 +18,15 @@
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
+mod blocks;
 mod column;
+mod format;
 mod page;
 mod rows;
+mod text;
 
 pub use column::{About, Cell, Column, Columns, Kind, abouts};
+pub use format::{Format, fold_at, is_wide, show_as, shown_as};
 pub use page::section;
-pub use rows::Csv;
+pub use rows::{Csv, csv};
+pub use text::{Entry, Table, labelled, or_dash, right, right_or_dash};

@@ -1,8 +1,8 @@
 //! Events: what happened, in order. Mechanics publish them; metrics and recorders only listen.
 
-use rne_core::TaskId;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use crate::hash::part;
 use crate::ids::{RescueeId, RobotId};
@@ -38,7 +38,7 @@ ron_tree::named! {
     pub enum CutOffCause {
         /// It knows no way to the place.
         NoWay = "knows no way",
-        /// It came no nearer for `mission.cut_off_s`.
+        /// It came no nearer for `mission.cut_off_s`, nor did those for which it waits.
         NoProgress = "comes no nearer",
     }
 }
@@ -181,8 +181,7 @@ pub enum Event {
         /// The robot.
         robot: RobotId,
     },
-    /// A robot gave up on a place to which it knows no way, or to which it came no nearer: the rescuee, the
-    /// errand or the rest place there.
+    /// A robot gave up on a place to which it knows no way: the rescuee, the errand or the rest place there.
     Unreachable {
         /// The robot.
         robot: RobotId,
@@ -190,7 +189,7 @@ pub enum Event {
         place: [f32; 2],
     },
     /// The team no longer waits for a robot that does not get home or to rest, until it comes nearer; or a robot
-    /// gave up on an errand to which it came no nearer.
+    /// gave up on a rescuee or an errand to which it came no nearer.
     CutOff {
         /// The robot.
         robot: RobotId,

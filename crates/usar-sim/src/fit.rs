@@ -1,12 +1,12 @@
-//! Whether the record of a trial that was read from a file fits the tables of its scenario. A record that fits
-//! names only tasks, roles and robots that exist, and its counts and sums can be computed.
+//! Whether the record of a trial that was read from a file fits the tables of its scenario. A record that
+//! fits names only tasks, roles and robots that exist, and its counts and sums can be computed.
 
-use rne_core::{Decision, Member, MemberOutcome, Question, RoundOutcome};
 use ron_tree::Problem;
+use serde_json::Value;
+use teaming::{Decision, Member, MemberOutcome, Question, RoundOutcome, TaskId};
 
 use crate::event::Event;
-use crate::metrics::RoundRecord;
-use crate::record::{RobotRecord, TrialRecord};
+use crate::record::{TaskRecord, TrialRecord};
 use crate::scenario::Scenario;
 
 /// No result of a trial is as large as this: neither a time, nor a cost, nor a distance.
@@ -57,12 +57,27 @@ fn sum(field: &str, mut counts: impl Iterator<Item = u32>) -> Fits {
     fits(is_count, field, "must add up to less than 2^32")
 }
 
-fn results<const N: usize>(values: [(&str, f64); N]) -> Fits {
-    let wrong = values.into_iter().find(|(_, value)| !is_result(*value));
-    wrong.map_or(Ok(()), |(field, value)| {
-        let rule = "must be smaller: no trial has such a result";
-        Err(Box::new(Problem::new(field, rule, format!("{value:e}"))))
-    })
+/// Checks that something is the number of one of so many things.
+fn number(what: &str, count: usize, field: &str, found: u64) -> Fits {
+    let rule = format!("must be the number of a {what}, below {count}");
+    if found < count as u64 { Ok(()) } else { Err(Box::new(Problem::new(field, rule, found))) }
+}
+
+/// Checks that fields of a record can be results of a trial.
+macro_rules! results {
+    ($record:ident: $($field:ident)+) => {
+        [$((stringify!($field), $record.$field)),+].into_iter().try_for_each(|(field, value)| {
+            let rule = "must be smaller: no trial has such a result";
+            let wrong = || Box::new(Problem::new(field, rule, format!("{value:e}")));
+            is_result(value).then_some(()).ok_or_else(wrong)
+        })
+    };
+}
+
+/// The numbers in a value, in lists and in lists of lists.
+fn numbers(value: &Value) -> Vec<u64> {
+    let inside = value.as_array().into_iter().flatten().flat_map(numbers);
+    value.as_u64().into_iter().chain(inside).collect()
 }
 
 impl<'a> Tables<'a> {
@@ -76,15 +91,12 @@ impl<'a> Tables<'a> {
         }
     }
 
-    fn task(&self, field: &str, task: usize) -> Fits {
-        let tasks = self.tasks.len();
-        let rule = format!("must be the number of a task, below {tasks}");
-        if task < tasks { Ok(()) } else { Err(Box::new(Problem::new(field, rule, task))) }
+    fn task(&self, field: &str, task: TaskId) -> Fits {
+        number("task", self.tasks.len(), field, task.0.into())
     }
 
     fn robot(&self, field: &str, robot: u32) -> Fits {
-        let rule = format!("must be the number of a robot, below {}", self.robots);
-        if (robot as usize) < self.robots { Ok(()) } else { Err(Box::new(Problem::new(field, rule, robot))) }
+        number("robot", self.robots, field, robot.into())
     }
 
     /// Checks a decision: the question, its answer, and the members as they really were. The policy's account
@@ -114,10 +126,8 @@ impl<'a> Tables<'a> {
         let is_sorted = question.members.is_sorted_by(|a, b| a.id < b.id);
         fits(is_sorted, "question.members", "must be in the order of their ids")?;
         question.members.iter().try_for_each(|member| self.robot("question.members.id", member.id))?;
-        let checked = question.clone().checked();
-        Ok(checked
-            .map(drop)
-            .map_err(|wrong| Problem::new("question", format!("does not fit: {wrong}"), ""))?)
+        let checked = question.clone().checked().map(drop);
+        Ok(checked.map_err(|wrong| Problem::new("question", format!("does not fit: {wrong}"), ""))?)
     }
 
     /// Checks an event: the robots and tasks that it names.
@@ -125,26 +135,16 @@ impl<'a> Tables<'a> {
     /// # Errors
     /// The first number that no robot or task has.
     pub fn check_event(&self, event: &Event) -> Fits {
-        let named = match serde_json::to_value(event) {
-            Ok(serde_json::Value::Object(kinds)) => kinds.into_iter().next().map(|(_, fields)| fields),
-            _ => None,
-        };
-        let Some(named) = named else { return Ok(()) };
-        let number = |value: &serde_json::Value| u32::try_from(value.as_u64()?).ok();
-        for field in ["robot", "room_for", "resource_of"] {
-            named[field]
-                .as_u64()
-                .map_or(Ok(()), |_| self.robot(field, number(&named[field]).unwrap_or(u32::MAX)))?;
+        let kinds = serde_json::to_value(event).unwrap_or_default();
+        let named = kinds.as_object().and_then(|kinds| kinds.values().next()).unwrap_or(&Value::Null);
+        let (tasks, groups) = (self.tasks.len(), named["groups"].as_array());
+        let is_grouped = groups.is_none_or(|groups| groups.len() == tasks);
+        fits(is_grouped, "groups", "must have a group for each task")?;
+        for field in ["robot", "room_for", "resource_of", "robots", "groups"] {
+            let mut found = numbers(&named[field]).into_iter();
+            found.try_for_each(|found| number("robot", self.robots, field, found))?;
         }
-        let robots = named["robots"].as_array().into_iter().flatten().filter_map(number);
-        robots.into_iter().try_for_each(|robot| self.robot("robots", robot))?;
-        match event {
-            Event::RoundStarted { groups, .. } => {
-                fits(groups.len() == self.tasks.len(), "groups", "must have a group for each task")?;
-                groups.iter().flatten().try_for_each(|robot| self.robot("groups", robot.0))
-            }
-            _ => named["task"].as_u64().map_or(Ok(()), |task| self.task("task", task as usize)),
-        }
+        named["task"].as_u64().map_or(Ok(()), |found| number("task", tasks, "task", found))
     }
 
     /// Checks the record of a trial.
@@ -156,18 +156,18 @@ impl<'a> Tables<'a> {
         fits(tasks.eq(self.tasks.iter().copied()), "tasks", "must be the tasks of the scenario")?;
         sum("tasks.secured", record.tasks.iter().map(|task| task.totals.secured))?;
         sum("tasks.rescued", record.tasks.iter().map(|task| task.totals.rescued))?;
-        each("tasks", &record.tasks, |task| {
-            results([("energy", task.totals.energy), ("hp", task.totals.hp)])
-        })?;
-        results([
-            ("time_s", record.time_s),
-            ("ungrouped_energy", record.ungrouped_energy),
-            ("ungrouped_hp", record.ungrouped_hp),
-        ])?;
+        each("tasks", &record.tasks, |TaskRecord { totals, .. }| results!(totals: energy hp))?;
+        results!(record: time_s ungrouped_energy ungrouped_hp)?;
         sum("rounds.rescued", record.rounds.iter().map(|round| round.rescued))?;
         sum("rounds.secured", record.rounds.iter().map(|round| round.secured))?;
         sum("rounds.turned_back", record.rounds.iter().map(|round| round.turned_back))?;
-        each("rounds", &record.rounds, |round| self.check_round(round))?;
+        each("rounds", &record.rounds, |round| {
+            fits(round.round > 0, "round", "must be counted from 1")?;
+            self.task("task", round.task)?;
+            fits(round.end_s.is_none_or(is_result), "end_s", "must be smaller: no trial has such a result")?;
+            results!(round: start_s energy hp)?;
+            each("members", &round.members, |member| self.check_member(member))
+        })?;
         each("ledger", &record.ledger, |round| self.check_outcome(round))?;
         each("decisions", &record.decisions, |asked| {
             self.check_decision(&asked.question, &asked.decision, asked.truth.as_deref())
@@ -175,50 +175,27 @@ impl<'a> Tables<'a> {
         fits(record.robots.len() == self.robots, "robots", "must be the robots of the scenario")?;
         let are_in_order = record.robots.iter().zip(0..).all(|(robot, id)| robot.robot == id);
         fits(are_in_order, "robots", "must be in the order of their numbers")?;
-        each("robots", &record.robots, |robot| self.check_robot(robot))?;
+        each("robots", &record.robots, |robot| {
+            fits(self.roles.contains(&robot.role.as_str()), "role", "must be a role of the scenario")?;
+            results!(robot: initial_energy initial_hp final_energy final_hp energy_spent hp_lost)?;
+            results!(robot: distance_m waiting_s longest_stall_s)?;
+            robot.stall.waits_for.map_or(Ok(()), |other| self.robot("stall.waits_for", other.0))
+        })?;
         each("cut_off", &record.cut_off, |cut_off| self.robot("robot", cut_off.robot))
-    }
-
-    fn check_round(&self, round: &RoundRecord) -> Fits {
-        fits(round.round > 0, "round", "must be counted from 1")?;
-        self.task("task", round.task.index())?;
-        results([
-            ("start_s", round.start_s),
-            ("end_s", round.end_s.unwrap_or_default()),
-            ("energy", round.energy),
-            ("hp", round.hp),
-        ])?;
-        each("members", &round.members, |member| self.check_member(member))
     }
 
     fn check_outcome(&self, round: &RoundOutcome) -> Fits {
         fits(round.groups.len() == self.tasks.len(), "groups", "must have a group for each task")?;
-        results([("duration_s", round.duration_s)])?;
+        results!(round: duration_s)?;
         each("groups", &round.groups, |group| {
-            self.task("task", group.task.index())?;
-            results([("energy", group.energy), ("hp", group.hp)])?;
+            self.task("task", group.task)?;
+            results!(group: energy hp)?;
             each("members", &group.members, |member| self.check_member(member))
         })
     }
 
     fn check_member(&self, member: &MemberOutcome) -> Fits {
         self.robot("id", member.id)?;
-        results([("energy", member.energy), ("hp", member.hp)])
-    }
-
-    fn check_robot(&self, robot: &RobotRecord) -> Fits {
-        fits(self.roles.contains(&robot.role.as_str()), "role", "must be a role of the scenario")?;
-        results([
-            ("initial_energy", robot.initial_energy),
-            ("initial_hp", robot.initial_hp),
-            ("final_energy", robot.final_energy),
-            ("final_hp", robot.final_hp),
-            ("energy_spent", robot.energy_spent),
-            ("hp_lost", robot.hp_lost),
-            ("distance_m", robot.distance_m),
-            ("waiting_s", robot.waiting_s),
-            ("longest_stall_s", robot.longest_stall_s),
-        ])?;
-        robot.stall.waits_for.map_or(Ok(()), |other| self.robot("stall.waits_for", other.0))
+        results!(member: energy hp)
     }
 }

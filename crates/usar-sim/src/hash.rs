@@ -2,8 +2,8 @@
 //! listens, metrics and decisions, is no part of it: a new counter changes no hash.
 //!
 //! Every [`PERIOD_S`] seconds and at the end, each part of the state is written as bytes (postcard, or words)
-//! and hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link. Each
-//! link also keeps shortened digests of the parts, which show in which part two chains differ.
+//! and hashed (XXH3, 128 bits). The digests of all parts, the step and the previous link make the next link.
+//! Each link also keeps shortened digests of the parts, which show in which part two chains differ.
 
 use std::cell::Cell;
 

@@ -1,6 +1,6 @@
 //! Limits of scenarios: what each value may be. `docs/limits.md` is made from this file.
 
-use rne_core::question::MAX_TASKS;
+use teaming::question::MAX_TASKS;
 
 ron_tree::limits! {
     /// Bytes of a name: a scenario's, a role's, a task's, a need's. Letters, digits, `-` and `_`, which all
@@ -35,8 +35,8 @@ ron_tree::limits! {
     HP: "roles.*.hp" = 0.001, 1e6;
     /// Battery capacity at 100 %.
     ENERGY: "roles.*.energy" = 0.001, 1e6;
-    /// Top speed, in metres per second; times the length of a step, at most the robot's radius, and 0.12 m where
-    /// debris can be pushed.
+    /// Top speed, in metres per second; times the length of a step, at most the robot's radius, and 0.12 m
+    /// where debris can be pushed.
     SPEED_MPS: "roles.*.speed_mps" = 0.05, 20;
     /// Acceleration, in metres per second squared.
     ACCELERATION_MPS2: "roles.*.acceleration_mps2" = 0.05, 100;

@@ -1,7 +1,7 @@
 //! The counts and totals of a trial, gathered from events and charges.
 
-use rne_core::{MemberOutcome, TaskId};
 use serde::{Deserialize, Serialize};
+use teaming::{MemberOutcome, TaskId};
 
 use crate::event::{CutOffCause, Event, ReturnCause};
 use crate::ids::RobotId;
@@ -68,7 +68,7 @@ pub struct Counts {
     pub back_offs: u32,
     /// Errands done, in a scenario with errands.
     pub errands_done: u32,
-    /// Places that robots gave up on, because they knew no way there or came no nearer.
+    /// Places that robots gave up on because they knew no way there.
     pub unreachable: u32,
 }
 

@@ -193,8 +193,8 @@ impl Physics {
     }
 
     /// Advances time by one step. `to_debris` is the distance from a point to the nearest piece of debris, at
-    /// most the given reach, in metres, and `to_pushable` to the nearest that can be pushed. `pieces_touch` tells
-    /// whether a piece that can be pushed touches another piece, or the border of this arena.
+    /// most the given reach, in metres, and `to_pushable` to the nearest that can be pushed. `pieces_touch`
+    /// tells whether a piece that can be pushed touches another piece, or the border of this arena.
     pub(crate) fn integrate(
         &mut self,
         to_debris: impl Fn(Vector, f32) -> f32,

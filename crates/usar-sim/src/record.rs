@@ -1,7 +1,7 @@
 //! The record of a trial: its results once it is over.
 
-use rne_core::{Decision, Evidence, Extent, Member, Question, RoundOutcome};
 use serde::{Deserialize, Serialize};
+use teaming::{Decision, Evidence, Extent, Member, Question, RoundOutcome};
 
 use crate::conflict::Delay;
 use crate::hash::HashChain;

@@ -5,8 +5,8 @@
 
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use crate::geometry::RadiationZone;
 use crate::ids::{RescueeId, RobotId};

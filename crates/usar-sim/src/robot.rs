@@ -5,9 +5,10 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rne_core::{Level, LevelNeed, Member, NeedId, NeedVector, NeedsError};
+use rne_core::{NeedVector, NeedsError};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
+use teaming::{Level, LevelNeed, Member, NeedId};
 
 use crate::ids::RescueeId;
 use crate::model::{NeedModel, RobotModel};

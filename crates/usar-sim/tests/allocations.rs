@@ -3,8 +3,8 @@
 
 use std::alloc::System;
 
-use rne_core::{Deadline, Session};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use teaming::{Deadline, Session};
 use usar_sim::conflict::DelayCause;
 use usar_sim::hash::PERIOD_S;
 use usar_sim::scenario::Scenario;

@@ -5,14 +5,14 @@ use thiserror::Error;
 /// A value on the command line that its flag does not take.
 #[derive(Debug, PartialEq, Eq, Error)]
 #[error("must be {rule}, found {found:?}")]
-pub(crate) struct BadValue {
+pub struct BadValue {
     rule: &'static str,
     found: String,
 }
 
 impl BadValue {
     /// The error for this text.
-    pub(crate) fn new(rule: &'static str, found: &str) -> Self {
+    pub fn new(rule: &'static str, found: &str) -> Self {
         Self { rule, found: found.to_owned() }
     }
 }

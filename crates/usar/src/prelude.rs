@@ -1,12 +1,14 @@
 //! What most verbs need.
 
-pub(crate) use std::io::Write;
-pub(crate) use std::path::{Path, PathBuf};
+pub use std::io::Write;
+pub use std::path::{Path, PathBuf};
 
-pub(crate) use clap::Args;
-pub(crate) use experiments::{Failure, refuse};
-pub(crate) use rne_core::Registry;
+pub use clap::Args;
+pub use experiments::{Failure, refuse};
+pub use tables::{Entry, Table, labelled, or_dash, right, right_or_dash};
+pub use teaming::Registry;
 
-pub(crate) use crate::output::{Destination, csv_of, make_folder, print_json, print_table};
-pub(crate) use crate::printable::counted;
-pub(crate) use crate::running::{STOP, is_stopped, session_of, stop_on_signals, tell};
+pub use crate::output::{Destination, make_folder};
+pub use crate::printable::counted;
+pub use crate::report::Report;
+pub use crate::running::{STOP, is_stopped, session_of, stop_on_signals, tell};

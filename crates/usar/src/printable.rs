@@ -7,7 +7,7 @@ use ron_tree::visible;
 use textwrap::{Options, WordSplitter};
 
 /// A number of things: `1 case`, `2 cases`, `3 policies`.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
+pub fn counted(count: usize, thing: &str) -> String {
     match thing.strip_suffix('y') {
         _ if count == 1 => format!("1 {thing}"),
         Some(stem) => format!("{count} {stem}ies"),

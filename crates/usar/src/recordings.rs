@@ -12,8 +12,8 @@ use experiments::run::TrialKey;
 use experiments::sweep::folder::Folder;
 use experiments::sweep::names::RECORDINGS;
 use recording::{Options, Recorder, Recording};
-use rne_core::{Deadline, Session};
 use ron_tree::file::{ReadError, read};
+use teaming::{Deadline, Session};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::Simulation;
 

@@ -1,6 +1,6 @@
 //! Sessions of policies, signals, and messages on stderr.
 
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -10,20 +10,20 @@ use std::time::Instant;
 
 use experiments::Failure;
 use experiments::experiment::PolicySpec;
-use rne_core::{PolicyError, Session, TrialStart};
 use signal_hook::consts::{SIGINT, SIGTERM};
+use teaming::{PolicyError, Session, TrialStart};
 use terminal_size::terminal_size_of;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
-use crate::output::columns_of;
 use crate::printable::Printable;
+use crate::report::columns_of;
 
 /// A trial checks once in this many steps whether it is to stop.
 const CLOCK_CHECK_STEPS: u64 = 64;
 
 /// Set by Ctrl-C, SIGTERM and SIGHUP.
-pub(crate) static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
+pub static STOP: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// The number of the signal that set [`STOP`]; 0 for none.
 static SIGNAL: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
@@ -47,12 +47,18 @@ pub(crate) fn program() -> std::io::Result<PathBuf> {
     PROGRAM.get().cloned().map_or_else(std::env::current_exe, Ok)
 }
 
+/// The words that start this program as a guard, also after its file was replaced.
+pub(crate) fn own_guard() -> Vec<OsString> {
+    let own = Path::new("/proc/self/exe");
+    let file = if own.exists() { Ok(own.to_owned()) } else { std::env::current_exe() };
+    file.map_or_else(|_| Vec::new(), |file| [file.into(), "self".into(), "guard".into()].to_vec())
+}
+
 /// Opens a session of a policy for a trial.
-pub(crate) fn session_of(
-    spec: &PolicySpec,
-    scenario: &Scenario,
-    seed: u64,
-) -> Result<Box<dyn Session>, Failure> {
+///
+/// # Errors
+/// The policy cannot be opened, or does not take the trial.
+pub fn session_of(spec: &PolicySpec, scenario: &Scenario, seed: u64) -> Result<Box<dyn Session>, Failure> {
     let failed = |error: PolicyError| format!("policy {}: {error}", spec.label);
     let mut session = spec.made().open().map_err(|error| Failure::input(failed(error)))?;
     session
@@ -62,7 +68,7 @@ pub(crate) fn session_of(
 }
 
 /// From now on, Ctrl-C, SIGTERM and SIGHUP set [`STOP`], and running work ends in an orderly way.
-pub(crate) fn stop_on_signals() {
+pub fn stop_on_signals() {
     static REGISTERED: Once = Once::new();
     REGISTERED.call_once(register_signals);
 }
@@ -79,7 +85,7 @@ fn register_signals() {
 }
 
 /// Whether [`STOP`] is set.
-pub(crate) fn is_stopped() -> bool {
+pub fn is_stopped() -> bool {
     STOP.load(Ordering::Relaxed)
 }
 
@@ -124,7 +130,7 @@ impl Guard {
 }
 
 /// Prints a line on stderr. Failures to write it are ignored.
-pub(crate) fn tell(what: impl Display) {
+pub fn tell(what: impl Display) {
     let mut stderr =
         Printable::new(std::io::stderr()).with_columns(columns_of(terminal_size_of(std::io::stderr())));
     let _ = writeln!(stderr, "{what}").and_then(|()| stderr.flush());

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 use usar_sim::conflict::DelayCause;
-use usar_sim::record::{Status, TrialRecord};
+use usar_sim::record::{RobotRecord, Status, TrialRecord};
 use usar_sim::robot::STANDING_MPS;
 use usar_sim::scenario::{LayoutError, Scenario};
 use usar_sim::simulation::Simulation;
@@ -39,16 +39,16 @@ pub enum JourneysError {
 }
 
 impl Journeys {
-    /// Runs a world with every check enabled.
+    /// Runs a world under a policy with every check enabled.
     ///
     /// # Errors
-    /// The trial cannot begin, or fails.
-    pub fn run(scenario: &Scenario, seed: u64) -> Result<Self, JourneysError> {
-        let mut random = policies::standard().open("RANDOM").expect("known");
+    /// The trial cannot begin, fails, or gives a number that is not defined.
+    pub fn run(scenario: &Scenario, policy: &str, seed: u64) -> Result<Self, JourneysError> {
+        let mut policy = policies::standard().open(policy).expect("a policy's name");
         let mut trial = Simulation::new(scenario, seed)?.checked();
         let (mut still, mut longest) = (0_u64, 0_u64);
         while trial.ending().is_none() {
-            if let Some(Status::Failed(reason)) = trial.step(&mut *random) {
+            if let Some(Status::Failed(reason)) = trial.step(&mut *policy) {
                 return Err(JourneysError::Failed { reason });
             }
             let moves = trial.world().robots.iter().any(|robot| robot.velocity.length() > STANDING_MPS);
@@ -64,7 +64,16 @@ impl Journeys {
             longest = longest.max(still);
         }
         let record = trial.finish();
-        Ok(Self { record, standstill_s: longest as f64 * scenario.step_s() })
+        let is_defined = |robot: &RobotRecord| {
+            let RobotRecord { final_energy, final_hp, energy_spent, hp_lost, distance_m, .. } = robot;
+            [final_energy, final_hp, energy_spent, hp_lost, distance_m]
+                .iter()
+                .all(|number| number.is_finite())
+        };
+        if !record.robots.iter().all(is_defined) {
+            return Err(JourneysError::Failed { reason: "a robot has undefined numbers".to_owned() });
+        }
+        Ok(Self { record, standstill_s: longest as f64 * scenario.dt_s })
     }
 
     /// Robots that made no progress, with the cause.

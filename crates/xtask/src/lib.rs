@@ -6,15 +6,13 @@
     reason = "these are parts of tests: they panic where something is not as it must be"
 )]
 
-pub mod bend;
-pub mod damage;
 pub mod density;
+pub mod docs;
 pub mod golden;
 pub mod journeys;
-pub mod kills;
 pub mod limits;
+pub mod manual;
 pub mod movement;
-pub mod mutations;
 pub mod navigation;
 pub mod pages;
 pub mod quiet;
@@ -23,4 +21,5 @@ pub mod reference;
 pub mod reference_pages;
 pub mod rooms;
 pub mod team;
+pub mod weight;
 pub mod worlds;

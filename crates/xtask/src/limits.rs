@@ -1,24 +1,26 @@
 //! `docs/limits.md`, made from the constants that define the limits.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use ron_tree::limits::Limit;
+
+use crate::docs::{on_a_line, place};
 
 const HEAD: &str = "\
 # Limits
 
 What a file may say, and how much of it. Each limit is checked before anything is built: a file that goes
-beyond one is refused with its line and field, in less than 100 ms and with less than 50 MB of memory. Only
+beyond one is refused with its line and field, in less than 100 ms and with less than 110 MB of memory. Only
 regular files are read: no folder, no pipe, no device.
 
-The constants are the source of this page: `cargo run --bin xtask -- limits` makes it, and a test compares
+The constants are the source of this page: `cargo run --bin xtask -- reference` makes it, and a test compares
 it with them. `*` stands for any entry.
 ";
 
 /// Path of the page.
 pub fn path() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/limits.md")
+    place("docs/limits.md")
 }
 
 /// Text of the page.
@@ -34,8 +36,8 @@ pub fn page() -> String {
             "\n## {title}\n\n`{file}`\n\n| of | from | to | what |\n| --- | ---: | ---: | --- |\n"
         );
         for Limit { of, least, most, what } in limits {
-            let what = what.split_whitespace().collect::<Vec<_>>().join(" ");
-            let _ = writeln!(page, "| `{of}` | {} | {} | {what} |", number(*least), number(*most));
+            let _ =
+                writeln!(page, "| `{of}` | {} | {} | {} |", number(*least), number(*most), on_a_line(what));
         }
     }
     page

@@ -5,10 +5,7 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{
-    coverage, damage, golden, kills, limits, mutations, pages, quiet, reference, scale, scenarios, soak,
-    work, worlds,
-};
+use commands::{coverage, golden, man, pages, quiet, reference, scale, scenarios, weight, work, worlds};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -16,11 +13,8 @@ fn main() -> ExitCode {
         arguments.split_first().map_or(("", &[][..]), |(task, rest)| (task.as_str(), rest));
     match task {
         "coverage" => coverage::run(arguments),
-        "damage" => damage::run(arguments),
         "golden" => golden::run(arguments),
-        "kills" => kills::run(arguments),
-        "mutations" => mutations::run(arguments),
-        "limits" => limits::run(),
+        "man" => man::run(arguments),
         "movement" => xtask::movement::main(),
         "navigation" => xtask::navigation::main(),
         "pages" => pages::run(arguments),
@@ -28,13 +22,13 @@ fn main() -> ExitCode {
         "reference" => reference::run(),
         "scenarios" => scenarios::run(arguments),
         "scale" => scale::run(arguments),
-        "soak" => soak::run(arguments),
+        "weight" => weight::run(),
         "work" => work::run(arguments),
         "worlds" => worlds::run(arguments),
         _ => {
             eprintln!(
-                "xtask: no task {task:?}. Tasks: coverage, damage, golden, kills, limits, movement, \
-                 mutations, navigation, pages, quiet, reference, scale, scenarios, soak, work, worlds"
+                "xtask: no task {task:?}. Tasks: coverage, golden, man, movement, \
+                 navigation, pages, quiet, reference, scale, scenarios, weight, work, worlds"
             );
             ExitCode::from(2)
         }

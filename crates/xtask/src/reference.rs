@@ -3,9 +3,11 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::Value;
+
+use crate::docs::{on_a_line, place};
 
 const HEAD: &str = "\
 # Reference of scenario files
@@ -22,7 +24,7 @@ compares it with them.
 
 /// Path of the page.
 pub fn path() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/scenarios-reference.md")
+    place("docs/scenarios-reference.md")
 }
 
 /// Text of the page.
@@ -56,7 +58,7 @@ fn text<'v>(schema: &'v Value, key: &str) -> &'v str {
 
 /// Writes the section of a type: its fields, or its variants.
 fn section(page: &mut String, title: &str, schema: &Value) {
-    let _ = write!(page, "\n## {title}\n\n{}\n", on_a_line(text(schema, "description")));
+    let _ = write!(page, "\n## {title}\n\n{}\n", cell(schema));
     let variants = schema.get("oneOf").or(schema.get("anyOf")).and_then(Value::as_array);
     if let Some(fields) = schema.get("properties").and_then(Value::as_object) {
         let required = required(schema);
@@ -74,24 +76,14 @@ fn section(page: &mut String, title: &str, schema: &Value) {
                 Some(Value::Null) | None => String::new(),
                 Some(value) => format!("`{value}`"),
             };
-            let _ = writeln!(
-                page,
-                "| `{name}` | {} | {default} | {} |",
-                kind(field),
-                on_a_line(text(field, "description"))
-            );
+            let _ = writeln!(page, "| `{name}` | {} | {default} | {} |", kind(field), cell(field));
         }
     } else if let Some(variants) =
         variants.filter(|all| all.iter().all(|one| one.get("description").is_some()))
     {
         page.push_str("\n| variant | |\n| --- | --- |\n");
         for variant in variants {
-            let _ = writeln!(
-                page,
-                "| `{}` | {} |",
-                variant_name(variant),
-                on_a_line(text(variant, "description"))
-            );
+            let _ = writeln!(page, "| `{}` | {} |", variant_name(variant), cell(variant));
         }
     }
 }
@@ -170,6 +162,7 @@ fn kind(schema: &Value) -> String {
     }
 }
 
-fn on_a_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
+/// A comment as a cell of a table.
+fn cell(schema: &Value) -> String {
+    on_a_line(text(schema, "description")).replace('|', "\\|")
 }

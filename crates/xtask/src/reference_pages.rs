@@ -2,12 +2,14 @@
 //! `docs/columns.md`.
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::columns_page;
 use serde_json::Value;
 use usar_sim::event::event_schema;
+
+use crate::docs::{on_a_line, place};
 
 const EVENTS: &str = "\
 # Events: what can happen in a trial
@@ -30,7 +32,7 @@ The tables in the folder of `usar sweep scenarios/paper.ron`. A sweep's own `col
 needs and
 axes. The name of a metric on the command line has a dot before the task: the column `rescuees_hard` is
 `rescuees.hard`. [Experiments](experiments.md#what-is-in-the-folder) has the other files of the folder.
-The tables that `usar export csv` and `usar export parquet` write of a recording are \
+The tables that `usar export --to NAME.csv` writes of a trial, NAME-robots.csv and so on, are \
 [below](#recordings-robotscsv).
 
 The program is the source of this page: `cargo run --bin xtask -- reference` makes it.
@@ -39,10 +41,6 @@ The program is the source of this page: `cargo run --bin xtask -- reference` mak
 /// The pages, each with its path and its text.
 pub fn pages() -> [(PathBuf, String); 2] {
     [(place("docs/events.md"), events()), (place("docs/columns.md"), columns())]
-}
-
-fn place(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
 
 /// The columns of the paper's sweep and of recordings of its trials.
@@ -80,8 +78,7 @@ fn events() -> String {
 }
 
 fn comment(schema: &Value) -> String {
-    let text = schema["description"].as_str().unwrap_or_default();
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    on_a_line(schema["description"].as_str().unwrap_or_default())
 }
 
 /// A comment as part of a sentence.

@@ -1,10 +1,15 @@
 //! Random rooms, each from one seed: walls that meet in a T or cross, doors, robots of two radii, movable
 //! debris, steps of 0.01 to 0.05 s. Even seeds have errands, odd seeds a rescue mission. At first, every
 //! robot can reach every place of its own. Pushed debris may close a passage later.
+//!
+//! Two families: a few robots and doors for two ([`rooms`]), and a crowd and doors from one lane on
+//! ([`doors`]).
+
+use std::ops::Range;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::TaskId;
+use teaming::TaskId;
 use usar_sim::ids::RobotId;
 use usar_sim::model::RestSlots;
 use usar_sim::scenario::{
@@ -22,11 +27,30 @@ const KEEP_OFF_M: f64 = 0.15 + 0.05;
 /// No debris lies within this distance of a door's middle, in metres.
 const APRON_M: f64 = 2.5;
 
-/// The rooms scenario of a seed.
+/// How narrow doors are at least, beyond the diameter of the largest robot, in metres: its clearance on both
+/// sides, and a hand's breadth.
+const NARROW_M: f64 = 0.35;
+
+/// The widest of such doors, in metres.
+const WIDE_M: f64 = 4.0;
+
+/// Area for each robot of a crowd, in square metres.
+const AREA_M2: Range<f64> = 5.0..40.0;
+
+/// The rooms scenario of a seed: 2 to 12 robots, doors in which two pass or nearly so.
 pub fn rooms(seed: u64) -> Scenario {
-    let mut draws = ChaCha8Rng::seed_from_u64(seed ^ 0x0072_006f_006f_006d);
+    feasible(seed, 0x0072_006f_006f_006d, false)
+}
+
+/// The same with 2 to 60 robots, and doors of `NARROW_M` more than the largest robot to `WIDE_M`.
+pub fn doors(seed: u64) -> Scenario {
+    feasible(seed, 0x0064_006f_006f_0072, true)
+}
+
+fn feasible(seed: u64, family: u64, is_crowd: bool) -> Scenario {
+    let mut draws = ChaCha8Rng::seed_from_u64(seed ^ family);
     for _ in 0..400 {
-        if let Some(scenario) = draw(seed, &mut draws) {
+        if let Some(scenario) = draw(seed, &mut draws, is_crowd) {
             return scenario;
         }
     }
@@ -39,24 +63,30 @@ fn radii(draws: &mut ChaCha8Rng) -> [f64; 2] {
     if draws.random_range(0..3_u32) == 0 { [first; 2] } else { [first, draws.random_range(0.2..0.6)] }
 }
 
-fn draw(seed: u64, draws: &mut ChaCha8Rng) -> Option<Scenario> {
+fn draw(seed: u64, draws: &mut ChaCha8Rng, is_crowd: bool) -> Option<Scenario> {
     let columns = draws.random_range(2..=3_usize);
     let rows = draws.random_range(1..=2_usize);
-    let side = draws.random_range(12.0..18.0);
+    let mut side: f64 = draws.random_range(12.0..18.0);
+    let crowd = is_crowd.then(|| draws.random_range(2..=60_u32));
+    if let Some(robots) = crowd {
+        let area = f64::from(robots) * draws.random_range(AREA_M2);
+        side = side.max((area / (columns * rows) as f64).sqrt());
+    }
     let arena = [side * columns as f64, side * rows as f64 + 2.0];
     let radii = radii(draws);
-    let debris = debris(draws, arena, columns, rows, 2.0 * (radii[0].max(radii[1]) + KEEP_OFF_M));
+    let largest = 2.0 * radii[0].max(radii[1]);
+    let least = largest + 2.0 * KEEP_OFF_M;
+    let widths = if is_crowd { largest + NARROW_M..WIDE_M } else { least + 0.1..least + 1.5 };
+    let (debris, doors) = debris(draws, arena, [columns, rows], widths);
     let mut file = base(seed, arena, 120.0);
     file.name = format!("rooms-{seed}");
     file.dt_s = [0.01, 0.02, 0.05][draws.random_range(0..3_usize)];
     file.debris = debris;
     file.roles[0].radius_m = radii[0];
     file.roles[1].radius_m = radii[1];
-    let kinds = [
-        FreeSpace::keeping_off(arena, &file.debris, radii[0] + KEEP_OFF_M),
-        FreeSpace::keeping_off(arena, &file.debris, radii[1] + KEEP_OFF_M),
-    ];
-    let robots = draws.random_range(2..=12_u32);
+    let doors = if is_crowd { doors } else { Vec::new() };
+    let kinds = radii.map(|radius| FreeSpace::through(arena, &file.debris, radius + KEEP_OFF_M, &doors));
+    let robots = crowd.unwrap_or_else(|| draws.random_range(2..=12_u32));
     let mut taken = Vec::new();
     for robot in 0..robots {
         let role = if robot == 0 { 0 } else { draws.random_range(0..5_usize) / 2 };
@@ -116,13 +146,19 @@ fn mission(mut file: ScenarioFile, draws: &mut ChaCha8Rng, kinds: &[FreeSpace; 2
     Scenario::try_from(file).ok()
 }
 
-/// Walls with doors at least `door_m` wide, and pieces of debris that cover a share of the rooms.
-fn debris(draws: &mut ChaCha8Rng, arena: Point, columns: usize, rows: usize, door_m: f64) -> Vec<DebrisFile> {
+/// Walls with doors of these widths, and pieces of debris that cover a share of the rooms. Beside them, the
+/// middles of the doors.
+fn debris(
+    draws: &mut ChaCha8Rng,
+    arena: Point,
+    [columns, rows]: [usize; 2],
+    widths: Range<f64>,
+) -> (Vec<DebrisFile>, Vec<Point>) {
     let (mut debris, mut doors) = (Vec::new(), Vec::new());
     let [width, height] = [arena[0] / columns as f64, arena[1] / rows as f64];
     for column in 1..columns {
         let x = width * column as f64;
-        let (pieces, middles) = wall(draws, [x, 0.0], [x, arena[1]], rows, door_m);
+        let (pieces, middles) = wall(draws, [x, 0.0], [x, arena[1]], rows, &widths);
         debris.extend(pieces);
         doors.extend(middles);
     }
@@ -130,7 +166,7 @@ fn debris(draws: &mut ChaCha8Rng, arena: Point, columns: usize, rows: usize, doo
         // A cross if the wall continues beyond the first wall that it meets, a T if it ends there.
         let to = if draws.random_range(0..2_u32) == 0 { columns } else { 1 };
         let y = height * row as f64;
-        let (pieces, middles) = wall(draws, [0.0, y], [width * to as f64, y], to, door_m);
+        let (pieces, middles) = wall(draws, [0.0, y], [width * to as f64, y], to, &widths);
         debris.extend(pieces);
         doors.extend(middles);
     }
@@ -157,7 +193,7 @@ fn debris(draws: &mut ChaCha8Rng, arena: Point, columns: usize, rows: usize, doo
             name: None,
         });
     }
-    debris
+    (debris, doors)
 }
 
 /// The pieces of a straight wall along one axis, and the middles of its doors, one in each of `parts` equal
@@ -167,7 +203,7 @@ fn wall(
     from: Point,
     to: Point,
     parts: usize,
-    door_m: f64,
+    widths: &Range<f64>,
 ) -> (Vec<DebrisFile>, Vec<Point>) {
     let (mut pieces, mut doors) = (Vec::new(), Vec::new());
     let length = (to[0] - from[0]) + (to[1] - from[1]);
@@ -181,7 +217,7 @@ fn wall(
     };
     for part in 0..parts {
         let (low, high) = (length * part as f64 / parts as f64, length * (part + 1) as f64 / parts as f64);
-        let door = door_m + draws.random_range(0.1..1.5);
+        let door = draws.random_range(widths.clone());
         let at = draws.random_range(low + 2.0..high - 2.0 - door);
         doors.push(along(at + door / 2.0));
         add(begin, at);

@@ -2,8 +2,9 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::question::hardest_first;
-use rne_core::{Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
+use rne_core::NeedVector;
+use teaming::question::hardest_first;
+use teaming::{Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
 
 /// A question about a team of carriers, suppliers and observers, to be split over so many tasks, at most
 /// three. Their needs are as in the paper's scenario, drawn at random.

@@ -9,7 +9,7 @@ use parry2d::math::Vector;
 use rand::RngExt;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-use rne_core::TaskId;
+use teaming::TaskId;
 use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::model::RestSlots;
@@ -27,6 +27,10 @@ const NOTHING: &str = "(name: \"\", duration_s: 0.0, dt_s: 0.02, arena_m: (0.0, 
 
 /// Distance between the points of the flood fill, in metres.
 const CELL_M: f64 = 0.15;
+
+/// A door leads at most this far beyond the distance from walls: half a wall and the error of the grid, in
+/// metres.
+const DOOR_M: f64 = 0.4;
 
 /// Radius of all robots and the clearance of their routes, in metres.
 const KEEP_OFF_M: f64 = 0.55;
@@ -181,9 +185,14 @@ fn debris(draws: &mut ChaCha8Rng, arena: Point, above: f64, robots: u32, cover: 
     debris
 }
 
+/// The paper's scenario.
+pub fn paper() -> Scenario {
+    Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A world without anything in it, for robots of the paper's roles with its needs.
 pub(crate) fn base(seed: u64, arena_m: Point, duration_s: f64) -> ScenarioFile {
-    let paper = Scenario::parse(PAPER, "paper.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
+    let paper = paper();
     let nothing: ScenarioFile =
         parse_ron(NOTHING, "nothing.ron".as_ref()).expect("a scenario without robots");
     let (roles, needs) = (paper.roles.clone(), paper.needs.clone());
@@ -199,11 +208,13 @@ pub struct FreeSpace {
 impl FreeSpace {
     /// The largest connected part of the free plane among this debris.
     pub fn new(arena: Point, debris: &[DebrisFile]) -> Self {
-        Self::keeping_off(arena, debris, KEEP_OFF_M)
+        Self::through(arena, debris, KEEP_OFF_M, &[])
     }
 
-    /// The free plane for robots whose centres keep this far off debris and walls, in metres.
-    pub fn keeping_off(arena: Point, debris: &[DebrisFile], keep_off_m: f64) -> Self {
+    /// The same for robots whose centres keep this far off debris and walls, in metres, with doors that are
+    /// wide enough for a robot, perhaps narrower than the flood fill can tell: their middles. Nobody has a
+    /// place in such a door.
+    pub fn through(arena: Point, debris: &[DebrisFile], keep_off_m: f64, doors: &[Point]) -> Self {
         let outlines: Vec<Outline> = debris.iter().map(DebrisFile::outline).collect();
         let (columns, rows) = ((arena[0] / CELL_M) as usize, (arena[1] / CELL_M) as usize);
         let point = |i: usize| [(i % columns) as f64 * CELL_M, (i / columns) as f64 * CELL_M];
@@ -215,10 +226,15 @@ impl FreeSpace {
                 off_walls && outlines.iter().all(|outline| outline.distance_to(at) >= keep_off_m as f32)
             })
             .collect();
+        let in_a_door = |i: usize| {
+            let [x, y] = point(i);
+            doors.iter().any(|door| (x - door[0]).hypot(y - door[1]) < keep_off_m + DOOR_M)
+        };
+        let passable: Vec<bool> = (0..free.len()).map(|i| free[i] || in_a_door(i)).collect();
         let mut part = vec![usize::MAX; free.len()];
         let mut sizes = Vec::new();
         for start in 0..free.len() {
-            if !free[start] || part[start] != usize::MAX {
+            if !passable[start] || part[start] != usize::MAX {
                 continue;
             }
             let (mut open, mut size) = (vec![start], 0);
@@ -228,7 +244,7 @@ impl FreeSpace {
                 let next = [(i % columns > 0).then(|| i - 1), (i % columns + 1 < columns).then(|| i + 1)];
                 let next = next.into_iter().chain([i.checked_sub(columns), Some(i + columns)]).flatten();
                 for j in next.filter(|j| *j < free.len()) {
-                    if free[j] && part[j] == usize::MAX {
+                    if passable[j] && part[j] == usize::MAX {
                         part[j] = sizes.len();
                         open.push(j);
                     }
@@ -237,7 +253,7 @@ impl FreeSpace {
             sizes.push(size);
         }
         let largest = (0..sizes.len()).max_by_key(|k| sizes[*k]);
-        Self { columns, inside: part.iter().map(|part| Some(*part) == largest).collect() }
+        Self { columns, inside: (0..free.len()).map(|i| free[i] && Some(part[i]) == largest).collect() }
     }
 
     /// Whether a robot can stand at a place and reach the rest of the free plane.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import importlib.util
 import json
@@ -22,6 +23,7 @@ from ._policies import given
 from ._types import Policy
 
 HASH = "state_hash"  # text, even where it looks like a number
+MOST_THREADS = 1024  # as on the command line
 
 Policies = Union[Iterable[Policy], Mapping[str, Policy]]
 
@@ -37,9 +39,13 @@ class Results:
         self.path = Path(path)
         if not (self.path / "manifest.json").exists():
             raise FileNotFoundError(f"{self.path}: no folder of results: it has no manifest.json")
-        if frames not in (None, "pandas", "polars", "lists"):
-            raise ValueError(f'frames must be "pandas", "polars" or "lists", found {frames!r}')
-        self._frames = frames
+        self._frames = _checked(frames)
+        self._folder: Optional[_Folder] = None  # that they are in, if it is temporary
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        if self._folder is not None:
+            self.path = self._folder.path / "results"
 
     @property
     def trials(self) -> Any:
@@ -89,6 +95,7 @@ def sweep(
     set: Optional[Mapping[str, Any]] = None,
     progress: Union[bool, Callable[[int, int], None]] = True,
     frames: Optional[str] = None,
+    allow_programs: bool = False,
 ) -> Results:
     """Run paired trials of several policies.
 
@@ -97,7 +104,8 @@ def sweep(
     `out`, finished trials stay there, and the same call goes on where it was interrupted or a policy
     raised an exception; without it, they last as long as the results. `jobs` is the number of threads that
     run trials; a policy in Python answers all of them on the thread that called `sweep`. `progress` prints a
-    line on stderr, or is called with the numbers of trials that are done and that there are.
+    line on stderr, or is called with the numbers of trials that are done and that there are. Policies of
+    a sweep file that are programs are started only with `allow_programs`, or if you have allowed them before.
 
     >>> import usar
     >>> def by_id(question):
@@ -109,27 +117,31 @@ def sweep(
     >>> [(row["policy"], row["trial"]) for row in results.trials]
     [('by_id', 1), ('by_id', 2), ('DIS', 1), ('DIS', 2)]
     """
-    if jobs is not None and jobs < 1:
-        raise ValueError(f"jobs must be at least 1, found {jobs}")
-    kept = None if out is not None else tempfile.mkdtemp(prefix="usar-")
-    path = Path(out or kept or "") / ("results" if out is None else "")
+    if jobs is not None:
+        counted("jobs", jobs, MOST_THREADS)
+    _checked(frames)
     tell = _Line() if progress is True else progress or None
+    if tell is not None and not callable(tell):
+        raise TypeError(f"progress must be true, false or a function of two numbers, found {progress!r}")
+    folder = _Folder() if out is None else None
+    path = folder.path / "results" if folder else Path(out or "")
     if isinstance(file, _usar.Scenario):
         file, set = file.set(**(set or {})), None
     settings = [f"{field}={_usar.ron(value)}" for field, value in (set or {}).items()]
     listed = None if policies is None else _listed(policies)
     try:
-        _usar.sweep(file, listed, trials, first_seed, settings, path, jobs, tell)
+        _usar.sweep(file, listed, trials, first_seed, settings, path, jobs, tell, allow_programs)
     finally:
         if isinstance(tell, _Line):
             tell.end()
     results = Results(path, frames)
-    if kept is not None:
-        weakref.finalize(results, shutil.rmtree, kept, ignore_errors=True)
+    results._folder = folder
     with (path / "trials.csv").open(newline="") as table:
         failed = sum(row["status"] in ("failed", "panicked", "timed_out") for row in csv.DictReader(table))
     if failed:
-        warnings.warn(f"{failed} trials failed: the column status of results.trials has them", stacklevel=2)
+        with contextlib.suppress(ValueError):  # a closed stderr
+            told = f"{failed} trials failed: the column status of results.trials has them"
+            warnings.warn(told, stacklevel=2)
     return results
 
 
@@ -178,21 +190,67 @@ def _command(*words: str) -> str:
     raise (ValueError if done.returncode == 2 else RuntimeError)(done.stderr.strip().removeprefix("error: "))
 
 
+class _Folder:
+    """A temporary folder. Copies of results share it, and pickled results have its files.
+
+    The process that made it deletes it once no results need it.
+    """
+
+    def __init__(self, files: Optional[Mapping[str, bytes]] = None) -> None:
+        self.path = Path(tempfile.mkdtemp(prefix="usar-"))
+        weakref.finalize(self, _delete, self.path, os.getpid())
+        for name, content in (files or {}).items():
+            file = self.path / name
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_bytes(content)
+
+    def __deepcopy__(self, memo: Any) -> _Folder:
+        return self
+
+    def __reduce__(self) -> Any:
+        files = (file for file in self.path.rglob("*") if file.is_file())
+        return _Folder, ({file.relative_to(self.path).as_posix(): file.read_bytes() for file in files},)
+
+
+def _delete(path: Path, maker: int) -> None:
+    if os.getpid() == maker:  # the child of a process that forks has its objects as well
+        shutil.rmtree(path, ignore_errors=True)
+
+
 class _Line:
-    """Progress as a line on stderr, rewritten on a terminal and written once at the end elsewhere."""
+    """Progress as a line on stderr, rewritten on a terminal and written once at the end elsewhere.
+
+    A stderr that is not there, or takes nothing, loses the line and never the sweep.
+    """
 
     def __init__(self) -> None:
         self._last = ""
 
     def __call__(self, done: int, of: int) -> None:
         self._last = f"{done} of {of} trials are done"
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r{self._last}")
-            sys.stderr.flush()
+        self._write(f"\r{self._last}", "")
 
     def end(self) -> None:
         """Take the line away, or write it."""
-        sys.stderr.write("\r\x1b[K" if sys.stderr.isatty() else f"{self._last}\n" if self._last else "")
+        self._write("\r\x1b[K", f"{self._last}\n" if self._last else "")
+
+    def _write(self, on_a_terminal: str, elsewhere: str) -> None:
+        with contextlib.suppress(Exception):
+            sys.stderr.write(on_a_terminal if sys.stderr.isatty() else elsewhere)
+            sys.stderr.flush()
+
+
+def counted(name: str, count: int, most: int) -> int:
+    """A count that is from 1 to the most."""
+    if not 1 <= count <= most:
+        raise ValueError(f"{name} must be from 1 to {most}, found {count}")
+    return count
+
+
+def _checked(frames: Optional[str]) -> Optional[str]:
+    if frames not in (None, "pandas", "polars", "lists"):
+        raise ValueError(f'frames must be "pandas", "polars" or "lists", found {frames!r}')
+    return frames
 
 
 def _is_there(module: str) -> bool:

@@ -20,6 +20,7 @@ __all__ = [
     "advance_all",
     "command",
     "group",
+    "guard",
     "rne",
     "ron",
     "run",
@@ -98,6 +99,8 @@ class Simulation:
     @property
     def totals(self) -> tuple[int, float, float]: ...
     @property
+    def control_period_s(self) -> float: ...
+    @property
     def waypoints(self) -> numpy.typing.NDArray[numpy.float32]: ...
     @property
     def top_speeds(self) -> numpy.typing.NDArray[numpy.float32]: ...
@@ -112,6 +115,7 @@ def rne(
 def advance_all(trials: list[Simulation], threads: int) -> None: ...
 def ron(value: Any) -> str: ...
 def command(words: list[str]) -> int: ...
+def guard(words: list[str]) -> int: ...
 def sweep(
     file: Union[str, os.PathLike[str], Scenario],
     policies: Optional[list[Union[str, Own]]],
@@ -121,4 +125,5 @@ def sweep(
     out: Path,
     jobs: Optional[int],
     progress: Optional[Callable[[int, int], None]],
+    allow_programs: bool,
 ) -> None: ...

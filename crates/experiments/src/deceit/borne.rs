@@ -1,8 +1,8 @@
 //! What the trials of a sweep of lies show.
 
-use rne_core::arrow::Written;
+use statistics::Moments;
 use statistics::breakdown::Breakdown;
-use statistics::{Moments, cautious};
+use teaming::arrow::Written;
 
 use super::cells::{CONFIDENCE, Difference, Lie, deaf_guide, draw, lies};
 use crate::Failure;
@@ -133,6 +133,10 @@ impl Rows<'_> {
         self.folder.value((case, policy, trial), self.metric)
     }
 
+    fn mean(&self, case: usize, policy: usize, metric: usize) -> Option<f64> {
+        Moments::of(&self.folder.values(case, policy, metric)).mean
+    }
+
     fn trials(&self) -> impl Iterator<Item = u32> + use<> {
         1..=self.folder.experiment().trials
     }
@@ -148,10 +152,7 @@ impl Rows<'_> {
         for row in rows {
             differences.iter_mut().zip(row).for_each(|(all, one)| all.push(one));
         }
-        let mean = |case: &usize| {
-            let values = self.trials().filter_map(|trial| self.value(*case, policy, trial));
-            Moments::of(&values.collect::<Vec<_>>()).mean
-        };
+        let mean = |case: &usize| self.mean(*case, policy, self.metric);
         Borne {
             policy: self.label(policy).to_owned(),
             lie: lie.name.clone(),
@@ -193,9 +194,7 @@ impl Rows<'_> {
             let honest = *lie.cases.first()?;
             Some(self.value(honest, policy, trial)? - self.value(honest, rule, trial)?)
         };
-        let all: Vec<f64> = self.trials().filter_map(pair).collect();
-        let interval = cautious::interval(&all, CONFIDENCE);
-        let difference = Difference { mean: Moments::of(&all).mean, interval };
+        let difference = Difference::of(&self.trials().filter_map(pair).collect::<Vec<f64>>());
         let [policy, rule] = [policy, rule].map(|it| self.label(it).to_owned());
         Price { policy, rule, lie: lie.name.clone(), difference }
     }
@@ -209,14 +208,8 @@ impl Rows<'_> {
             let Some(guide) = deaf_guide(spec) else { continue };
             for lie in &self.lies {
                 for (case, liars) in lie.cases.iter().zip(&self.counts) {
-                    let mean = |metric: &usize| {
-                        let values = self
-                            .trials()
-                            .filter_map(|trial| self.folder.value((*case, policy, trial), *metric));
-                        Moments::of(&values.collect::<Vec<_>>()).mean
-                    };
                     let (guide, lie) = (guide.clone(), lie.name.clone());
-                    let values = places.iter().map(mean).collect();
+                    let values = places.iter().map(|metric| self.mean(*case, policy, *metric)).collect();
                     judgements.push(Judgement { guide, lie, liars: *liars, values });
                 }
             }

@@ -1,7 +1,8 @@
 //! The cells of a sweep of lies: which cases have which lie and how many liars.
 
-use rne_core::arrow::Written;
 use serde::Serialize;
+use statistics::{Moments, cautious};
+use teaming::arrow::Written;
 
 use crate::experiment::{Experiment, PolicySpec};
 use crate::{Failure, refuse};
@@ -22,6 +23,13 @@ pub struct Difference {
     pub mean: Option<f64>,
     /// Its interval; `None` where too few pairs differ.
     pub interval: Option<[f64; 2]>,
+}
+
+impl Difference {
+    /// The difference of these pairs.
+    pub(super) fn of(values: &[f64]) -> Self {
+        Self { mean: Moments::of(values).mean, interval: cautious::interval(values, CONFIDENCE) }
+    }
 }
 
 /// A lie, with the cases of each number of liars.

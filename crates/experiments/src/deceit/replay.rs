@@ -7,12 +7,12 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
-use rne_core::{Asked, Assignment, Deadline, Member, PolicyError, Question, Session, TrialStart};
 use serde::Serialize;
-use statistics::{Moments, cautious};
+use statistics::Moments;
+use teaming::{Asked, Assignment, Deadline, Member, PolicyError, Question, Session, TrialStart};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
-use super::cells::{CONFIDENCE, DEAF, Difference, Lie, lies};
+use super::cells::{DEAF, Difference, Lie, lies};
 use crate::experiment::{Experiment, PolicySpec};
 use crate::oracle::{Objective, Survey};
 use crate::regret::{PlayedDecision, PlayedTrial, StudyFolder};
@@ -61,9 +61,10 @@ impl Replay {
         done: impl Fn() + Sync,
     ) -> Result<Self, Failure> {
         let (counts, lies) = lies(experiment)?;
-        let trials: Vec<&PlayedTrial> = study.trials.iter().filter(|trial| trial.driver == DEAF).collect();
+        let trials: Vec<&PlayedTrial> =
+            study.folder.entries.iter().filter(|trial| trial.driver == DEAF).collect();
         if trials.is_empty() {
-            refuse!("{}: must have trials that {DEAF} decided, found none", study.path().display());
+            refuse!("{}: must have trials that {DEAF} decided, found none", study.folder.path.display());
         }
         let jobs: Vec<[usize; 2]> = (0..experiment.cases.len())
             .flat_map(|case| (0..trials.len()).map(move |trial| [case, trial]))
@@ -81,7 +82,7 @@ impl Replay {
             // One trial without a value, and the mean would be of some of the trials only.
             let values: Vec<f64> =
                 rows.iter().map(|row| row[policy]).collect::<Option<_>>().unwrap_or_default();
-            Difference { mean: Moments::of(&values).mean, interval: cautious::interval(&values, CONFIDENCE) }
+            Difference::of(&values)
         };
         let worth = |policy: usize, spec: &PolicySpec, lie: &Lie| Worth {
             policy: spec.label.clone(),

@@ -1,7 +1,7 @@
 //! Reproducing results: a command for one trial, and a file for the whole sweep.
 
-use rne_core::{Asked, TrialStart};
 use ron_tree::Node;
+use teaming::{Asked, TrialStart};
 use usar_sim::record::{DecisionRecord, TrialRecord};
 
 use super::file::{Map, SweepFile};
@@ -33,8 +33,8 @@ impl Experiment {
     }
 
     /// The first round in which the policy gives another answer than in the trial when it is asked the same
-    /// questions a few times again, each time in a session of its own. `None` if every answer is the same, or if the policy does not answer from
-    /// the question.
+    /// questions a few times again, each time in a session of its own. `None` if every answer is the same, or
+    /// if the policy does not answer from the question.
     pub fn answers_otherwise(&self, key: &TrialKey, record: &TrialRecord) -> Option<u32> {
         let spec = &self.policies[key.policy];
         if !spec.is_of_question() {

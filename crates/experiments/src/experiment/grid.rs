@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use rne_core::Registry;
 use store::{Failure, refuse};
+use teaming::Registry;
 use usar_sim::scenario::{Scenario, ScenarioFile, Words};
 
 use super::policy::PolicySpec;

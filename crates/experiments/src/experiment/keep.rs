@@ -15,8 +15,8 @@ ron_tree::named! {
         Rounds = "rounds",
         /// `robots.csv` as well.
         Robots = "robots",
-        /// `groups.csv`, `series.csv`, `hashes.csv` with the hash chain, `links.csv` with the messages of each
-        /// link, and what policies say of their decisions.
+        /// `groups.csv`, `series.csv`, `hashes.csv` with the hash chain, `links.csv` with the messages of
+        /// each link, and what policies say of their decisions.
         #[default]
         Groups = "groups",
     }

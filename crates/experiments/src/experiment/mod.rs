@@ -18,8 +18,8 @@ mod sweep_file;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use rne_core::Registry;
 use store::{Failure, refuse};
+use teaming::Registry;
 use xxhash_rust::xxh3::xxh3_128;
 
 use usar_sim::scenario::{Scenario, parse_tree, read_text};
@@ -30,7 +30,7 @@ pub use grid::{Axis, Case, VARIANT};
 pub use keep::{Keep, UnknownKeep};
 pub use plan::AnalysisPlan;
 pub use policy::{PolicySpec, split_list, with_oracle};
-pub use program::{Digest, Program};
+pub use program::{Digest, Program, SOURCE};
 pub use read::{companion, defaults, with_settings};
 pub use shard::{NoShard, Place, Shard};
 pub use sweep_file::SweepFileError;
@@ -200,7 +200,7 @@ impl Experiment {
             refuse!("trials: must be a count from 1 to {most}, found {trials}");
         }
         let cases = cases(&base, &axes)?;
-        let program = program.map_or_else(|| Program::running(&policies), Ok)?;
+        let program = program.map_or_else(|| permitted(&policies), Ok)?;
         let id = |case: &Case, (i, policy): (usize, &PolicySpec)| {
             let (program, made) = (program.deciding(i), policy.made());
             let scenario = deciding_text(&case.scenario);
@@ -337,4 +337,13 @@ impl Experiment {
             .collect();
         if places.is_empty() { String::new() } else { format!("{}: ", places.join(", ")) }
     }
+}
+
+/// The running program with these policies, none of which may start a program that nobody has allowed.
+fn permitted(policies: &[PolicySpec]) -> Result<Program, Failure> {
+    for spec in policies {
+        let refused = |error| Failure::input(format!("policy {}: {error}", spec.label));
+        spec.made().it.permission().map_err(refused)?;
+    }
+    Program::running(policies)
 }

@@ -3,9 +3,9 @@
 
 use std::fmt;
 
-use rne_core::arrow::Written;
-use rne_core::{MadeMeasure, MadePolicy, Registry};
 use ron_tree::{Node, Value, is_unseen};
+use teaming::arrow::Written;
+use teaming::{MadeMeasure, MadePolicy, Registry};
 use usar_sim::scenario::{Scenario, is_mistaken};
 
 use crate::oracle;
@@ -50,6 +50,9 @@ impl PolicySpec {
     pub fn parse(text: &str, registry: &Registry) -> Result<Self, Failure> {
         let text = text.trim();
         let (label, rest) = label_and_rest(text);
+        if let (Some(second), _) = label_and_rest(rest) {
+            refuse!("a policy has one label before `=`, found two in {text:?}: the second is {second:?}");
+        }
         let (name, options) = name_and_options(rest);
         if !registry.names().contains(&name) {
             registry.parse(rest).map_err(Failure::input)?;
@@ -271,6 +274,7 @@ mod tests {
         assert!(refused("DIS(score: Sum)").contains("policy DIS: it has no options"));
         assert!(refused("RNE(luck: 3)").contains("policy RNE: "));
         assert!(refused("=RNE").contains("label"));
+        assert!(refused("a=b=RNE").ends_with("found two in \"a=b=RNE\": the second is \"b\""));
         assert!(refused("NA=RNE").contains("take for a number, or for nothing"));
         assert!(refused("@x=RNE").contains("must not begin like a formula"));
         assert!(refused("-1=RNE").contains("must not begin like a formula"));

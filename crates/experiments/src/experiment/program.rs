@@ -3,11 +3,14 @@
 use std::fmt;
 use std::sync::OnceLock;
 
-use rne_core::MadePolicy;
 use store::Failure;
+use teaming::MadePolicy;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::policy::PolicySpec;
+
+/// Hash of the sources that decide every trial: all but those of the policies.
+pub const SOURCE: &str = env!("USAR_ENGINE");
 
 /// The program as far as it decides the trials of a sweep. A policy's trials stay valid as long as the
 /// simulator and the policy's own sources stay the same.
@@ -44,7 +47,7 @@ impl Program {
     pub fn running(policies: &[PolicySpec]) -> Result<Self, Failure> {
         let policies = policies.iter().map(|spec| source_of(spec.made())).collect::<Result<_, _>>()?;
         let version = env!("CARGO_PKG_VERSION").to_owned();
-        Ok(Self { version, source: env!("USAR_ENGINE").to_owned(), policies })
+        Ok(Self { version, source: SOURCE.to_owned(), policies })
     }
 
     /// The version, and one hash of the sources that decide the trials of these policies.
@@ -84,7 +87,7 @@ fn executable() -> Result<String, Failure> {
 
 #[cfg(test)]
 mod tests {
-    use rne_core::{Decision, Policy, PolicyError, PolicyKind, Question};
+    use teaming::{Decision, Policy, PolicyError, PolicyKind, Question};
 
     use super::*;
     use crate::experiment::with_oracle;

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use rne_core::arrow::Written;
-use rne_core::question::hardest_first;
-use rne_core::{GroupSizes, Quota};
+use teaming::arrow::Written;
+use teaming::question::hardest_first;
+use teaming::{GroupSizes, Quota};
 use usar_sim::scenario::Scenario;
 
 use super::Experiment;
 use super::policy::PolicySpec;
 
 impl Experiment {
-    /// What is doubtful about policies in the scenarios of the sweep, each once: estimators that have nothing to
-    /// judge, or need more raters of a robot than a group has.
+    /// What is doubtful about policies in the scenarios of the sweep, each once: estimators that have nothing
+    /// to judge, or need more raters of a robot than a group has.
     pub fn doubts(&self) -> BTreeSet<String> {
         let of_case = |scenario: &Scenario| -> Vec<String> {
             self.policies.iter().filter_map(|policy| policy.doubt(scenario)).collect()
@@ -22,8 +22,8 @@ impl Experiment {
 }
 
 impl PolicySpec {
-    /// A sentence about a policy whose estimator has nothing to judge in a scenario, or needs more raters than
-    /// the smallest group has.
+    /// A sentence about a policy whose estimator has nothing to judge in a scenario, or needs more raters
+    /// than the smallest group has.
     pub fn doubt(&self, scenario: &Scenario) -> Option<String> {
         let (label, name) = (&self.label, &scenario.name);
         if Written::of(self.written()).guide.is_some() && !scenario.goes_by_reports() {

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use rne_core::Registry;
 use store::{Failure, refuse};
+use teaming::Registry;
 use usar_sim::scenario::{Scenario, ScenarioFile, is_file, parse_ron, parse_tree, read_text};
 
 use super::file::SweepFile;

@@ -3,17 +3,17 @@
 use std::fmt::Display;
 use std::path::Path;
 
-use rne_core::{Asked, Assignment, Basis, PolicyError, Question, Session, TrialStart};
 use store::Failure;
+use teaming::{Asked, Assignment, Basis, PolicyError, Question, Session, TrialStart};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use super::{Case, Experiment, PolicySpec};
 use crate::run::{Player, Sessions};
 
 impl Experiment {
-    /// Draws every layout and asks every policy the first question, and once more in a second session. A
-    /// scenario without enough room, a policy that cannot group this team, or one that answers the same
-    /// question in two ways then fails before the first trial runs.
+    /// Draws every layout and asks every policy that is here the first question, and once more in a second
+    /// session. A scenario without enough room, a policy that cannot group this team, or one that answers the
+    /// same question in two ways then fails before the first trial runs.
     ///
     /// # Errors
     /// A layout that cannot be drawn, a question that a policy cannot answer, or another answer to it, with
@@ -45,7 +45,8 @@ impl Experiment {
             Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
         let Advance::Asks(Ask::Grouping(question)) = trial.advance() else { return Ok(()) };
         let start = TrialStart { scenario: &case.scenario.name, seed };
-        for (number, spec) in self.policies.iter().enumerate().filter(|(_, spec)| spec.is_of_question()) {
+        let is_asked = |spec: &PolicySpec| spec.is_of_question() && spec.made().it.basis() != Basis::Absent;
+        for (number, spec) in self.policies.iter().enumerate().filter(|(_, spec)| is_asked(spec)) {
             let refused = |error: &dyn Display| format!("{place}seed {seed}: policy {}: {error}", spec.label);
             let Player { session, basis } =
                 sessions.of(number, &*spec.made().it).map_err(|error| refused(&error))?;

@@ -6,9 +6,9 @@ use std::fmt::{self, Display};
 use std::mem;
 use std::path::Path;
 
-use rne_core::Registry;
 use ron_tree::limits::Limit;
 use ron_tree::{Node, nearest};
+use teaming::Registry;
 use usar_sim::scenario::{
     FORMAT, Location, NOT_MISTAKEN, Scenario, ScenarioFile, beside, is_mistaken, parse_ron, parse_tree,
 };

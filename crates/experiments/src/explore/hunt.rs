@@ -5,11 +5,11 @@ use std::sync::atomic::AtomicBool;
 
 use ron_tree::edited;
 use serde::{Deserialize, Serialize};
-use store::{Failure, Log};
+use store::Failure;
 
 use super::space::{Point, PointError, Space};
 use super::{Descent, Parameter, WORST};
-use crate::job::Job;
+use crate::job::{Job, JobFolder};
 
 /// Name of the file with the found scenario.
 pub const FOUND: &str = "found.ron";
@@ -42,18 +42,8 @@ pub struct Candidate {
     pub outcome: Result<f64, PointError>,
 }
 
-/// The candidates of a search.
-pub struct Trail {
-    log: Log,
-    candidates: Vec<Candidate>,
-}
-
-impl Trail {
-    /// All candidates, in the order in which they were evaluated; the first is the start.
-    pub fn candidates(&self) -> &[Candidate] {
-        &self.candidates
-    }
-}
+/// The candidates of a search, in the order in which they were evaluated; the first is the start.
+pub type Trail = JobFolder<Candidate>;
 
 impl Hunt {
     /// Opens the search's log in a folder.
@@ -61,8 +51,7 @@ impl Hunt {
     /// # Errors
     /// The folder belongs to something else, or the disk does not take the log.
     pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Trail, Failure> {
-        let (log, candidates, _) = JOB.open(folder, self.origin(), is_fresh)?;
-        Ok(Trail { log, candidates })
+        JOB.open(folder, self.origin(), is_fresh)
     }
 
     /// Everything that decides the evaluations.
@@ -84,7 +73,7 @@ impl Hunt {
     /// The candidate with the lowest or the highest outcome, as the search wants it; the earliest of
     /// equals.
     pub fn best<'a>(&self, trail: &'a Trail) -> Option<(&'a Candidate, f64)> {
-        let found = trail.candidates.iter();
+        let found = trail.entries.iter();
         let found = found.filter_map(|candidate| Some((candidate, *candidate.outcome.as_ref().ok()?)));
         found.min_by(|a, b| self.turned(a.1).total_cmp(&self.turned(b.1)))
     }
@@ -111,14 +100,12 @@ impl Hunt {
             present.into_iter().zip(ends).map(|(value, [low, high])| value.clamp(low, high)).collect();
         let mut asked = 0;
         self.descent.search(&self.space.free, &start, stop, |values| {
-            let known = trail.candidates.iter().find(|candidate| candidate.values == values).cloned();
-            let candidate = match known {
-                Some(candidate) => candidate,
-                None => match self.evaluate(values, stop) {
-                    None => return Ok(None),
-                    Some(candidate) => Self::add(trail, candidate)?,
-                },
-            };
+            let known = trail.entries.iter().find(|candidate| candidate.values == values).cloned();
+            let is_known = known.is_some();
+            let Some(candidate) = known.or_else(|| self.evaluate(values, stop)) else { return Ok(None) };
+            if !is_known {
+                trail.add(vec![candidate.clone()])?;
+            }
             asked += 1;
             done(asked, self.best(trail).map_or(f64::NAN, |(_, outcome)| outcome));
             Ok(Some(candidate.outcome.map_or(WORST, |outcome| self.turned(outcome))))
@@ -130,12 +117,6 @@ impl Hunt {
         let outcome = self.space.evaluate(std::slice::from_ref(&point), stop)?.pop()?;
         let outcome = outcome.and_then(|values| values[0].ok_or(PointError::Undefined));
         Some(Candidate { values: point.values, outcome })
-    }
-
-    fn add(trail: &mut Trail, candidate: Candidate) -> Result<Candidate, Failure> {
-        trail.log.add(&[&candidate])?;
-        trail.candidates.push(candidate.clone());
-        Ok(candidate)
     }
 
     /// A candidate as a scenario file with every value; `what` appears in its first line.

@@ -9,12 +9,12 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use serde::{Deserialize, Serialize};
-use store::{Failure, Log};
+use store::Failure;
 
 use super::design::{Block, MOVE, Method};
 use super::space::Point;
 use super::{Outcome, Parameter, Space, Values};
-use crate::job::Job;
+use crate::job::{Job, JobFolder};
 use statistics::bootstrap::interval;
 use statistics::sensitivity::{self as indices, Effects, Known, Shares};
 
@@ -44,9 +44,9 @@ pub struct Sensitivity {
 /// Block and point of an evaluation, from 0.
 type Place = (u32, usize);
 
-/// An evaluation in the log.
+/// An evaluation: of a point of a block.
 #[derive(Serialize, Deserialize)]
-struct Entry {
+pub struct Evaluation {
     block: u32,
     point: usize,
     first_seed: u64,
@@ -54,11 +54,8 @@ struct Entry {
     outcomes: Values,
 }
 
-/// The evaluations of a study, by block and point.
-pub struct Evaluations {
-    log: Log,
-    known: BTreeMap<Place, Values>,
-}
+/// The evaluations of a study.
+pub type Evaluations = JobFolder<Evaluation>;
 
 /// A parameter's index; its form depends on the method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -131,11 +128,10 @@ impl Row {
     }
 }
 
-impl Evaluations {
-    /// Number of evaluated points in the first `blocks` blocks.
-    pub fn count(&self, blocks: u32) -> usize {
-        self.known.range(..(blocks, 0)).count()
-    }
+/// The values of the evaluated points in the first `blocks` blocks, in order.
+fn known(evaluations: &Evaluations, blocks: u32) -> BTreeMap<Place, &Values> {
+    let known = evaluations.entries.iter().filter(|entry| entry.block < blocks);
+    known.map(|entry| ((entry.block, entry.point), &entry.outcomes)).collect()
 }
 
 impl Sensitivity {
@@ -144,9 +140,12 @@ impl Sensitivity {
     /// # Errors
     /// The folder belongs to something else, or the disk does not take the log.
     pub fn open(&self, folder: &Path, is_fresh: bool) -> Result<Evaluations, Failure> {
-        let (log, entries, _) = JOB.open::<Entry>(folder, self.origin(), is_fresh)?;
-        let known = entries.into_iter().map(|entry| ((entry.block, entry.point), entry.outcomes)).collect();
-        Ok(Evaluations { log, known })
+        JOB.open(folder, self.origin(), is_fresh)
+    }
+
+    /// Number of evaluated points in the first `blocks` blocks.
+    pub fn evaluated(&self, blocks: u32, evaluations: &Evaluations) -> usize {
+        known(evaluations, blocks).len()
     }
 
     /// Number of points in this many blocks.
@@ -189,7 +188,8 @@ impl Sensitivity {
         let all = (0..blocks).flat_map(|block| {
             self.points(block).into_iter().enumerate().map(move |(i, point)| ((block, i), point))
         });
-        let missing: Vec<_> = all.filter(|(place, _)| !evaluations.known.contains_key(place)).collect();
+        let known = known(evaluations, blocks);
+        let missing: Vec<_> = all.filter(|(place, _)| !known.contains_key(place)).collect();
         let trials = self.space.experiment.trials as usize;
         // A batch is large enough to keep all threads busy, and small enough that an interruption loses
         // little.
@@ -199,18 +199,15 @@ impl Sensitivity {
             let (places, points): (Vec<_>, Vec<_>) = batch.iter().cloned().unzip();
             let Some(values) = self.space.evaluate(&points, stop) else { return Ok(false) };
             let points = places.into_iter().zip(points).zip(values);
-            let entry = |(((block, point), Point { values, first_seed }), outcomes)| Entry {
+            let entry = |(((block, point), Point { values, first_seed }), outcomes)| Evaluation {
                 block,
                 point,
                 first_seed,
                 values,
                 outcomes,
             };
-            let entries: Vec<Entry> = points.map(entry).collect();
-            evaluations.log.add(&entries)?;
-            there += entries.len();
-            let known = entries.into_iter().map(|entry| ((entry.block, entry.point), entry.outcomes));
-            evaluations.known.extend(known);
+            evaluations.add(points.map(entry).collect())?;
+            there += batch.len();
             done(there);
         }
         Ok(true)
@@ -236,7 +233,8 @@ impl Sensitivity {
     /// Number of failed points in the first `blocks` blocks, and the first failure's reason; `None` without
     /// failures.
     pub fn failures(&self, blocks: u32, evaluations: &Evaluations) -> Option<(usize, String)> {
-        let mut reasons = evaluations.known.range(..(blocks, 0)).filter_map(|(_, v)| v.as_ref().err());
+        let known = known(evaluations, blocks);
+        let mut reasons = known.values().filter_map(|values| values.as_ref().err());
         let first = reasons.next()?.to_string();
         Some((1 + reasons.count(), first))
     }
@@ -244,10 +242,10 @@ impl Sensitivity {
     /// The indices of all outcomes from the first `blocks` blocks. Each outcome's parameters are in the
     /// order of their size, with chance last. Blocks with an undefined point are left out.
     pub fn indices(&self, blocks: u32, evaluations: &Evaluations) -> Vec<Row> {
-        let outcomes = self.space.outcomes.iter().enumerate();
+        let (outcomes, known) = (self.space.outcomes.iter().enumerate(), known(evaluations, blocks));
         let of = |(place, outcome): (usize, &Outcome)| {
             let values = |number: u32| -> Option<Vec<f64>> {
-                let points = (0..self.count(1)).map(|point| evaluations.known.get(&(number, point)));
+                let points = (0..self.count(1)).map(|point| known.get(&(number, point)));
                 points.map(|values| values?.as_ref().ok()?[place]).collect()
             };
             let whole: Vec<(u32, Vec<f64>)> =

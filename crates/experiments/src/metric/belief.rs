@@ -1,8 +1,8 @@
 //! How far what was believed of robots was true, in the decisions of a trial in which the base went by
 //! reports: by the policy's estimator, or else as it was said last.
 
-use rne_core::{Estimate, Member};
 use statistics::scores::{Forecast, area_under_curve, brier, calibration_error, crps, log_score, tau_b};
+use teaming::{Estimate, Member};
 use usar_sim::model::Liar;
 use usar_sim::record::{DecisionRecord, HeardRecord, TrialRecord};
 

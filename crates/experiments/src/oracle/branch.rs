@@ -1,8 +1,8 @@
 //! One branch of a trial: a decision and its outcome.
 
-use rne_core::{AssignmentError, Deadline, Decision, PolicyError, Session, TrialStart};
 use serde::{Deserialize, Serialize};
 use store::Failure;
+use teaming::{AssignmentError, Deadline, Decision, PolicyError, Session, TrialStart};
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{Advance, Ask, AssignError, Checkpoint, Simulation};

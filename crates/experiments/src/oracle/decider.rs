@@ -3,17 +3,17 @@
 
 use std::sync::Arc;
 
-use rne_core::{
+use serde::{Deserialize, Serialize};
+use teaming::{
     Account, Alternative, Asked, Assignment, Basis, Decision, Driver, MadePolicy, PolicyError, PolicyKind,
     Registry, Session,
 };
-use serde::{Deserialize, Serialize};
 use usar_sim::simulation::Simulation;
 
-use super::DEFAULT_LIMIT;
 use super::branch::{BranchError, play};
 use super::objective::Objective;
 use super::survey::{Coverage, survey};
+use super::{DEFAULT_LIMIT, LIMITS};
 use crate::metric::task_names;
 
 /// Name of the oracle among the policies.
@@ -37,31 +37,20 @@ pub enum Pick {
     Worst,
 }
 
-/// Options of `ORACLE`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct OracleOptions {
-    /// The metric that it maximises, or minimises if it is a cost.
-    pub metric: String,
-    /// How far it looks ahead.
-    pub horizon: Horizon,
-    /// The policy that decides after the round, if the horizon is the trial.
-    pub then: String,
-    /// Largest number of assignments that it plays for one decision.
-    pub limit: u64,
-    /// Which assignment it chooses.
-    pub pick: Pick,
-}
-
-impl Default for OracleOptions {
-    fn default() -> Self {
-        Self {
-            metric: "rescuees.total".to_owned(),
-            horizon: Horizon::Round,
-            then: "RNE".to_owned(),
-            limit: DEFAULT_LIMIT,
-            pick: Pick::Best,
-        }
+teaming::options! {
+    /// Options of `ORACLE`.
+    #[derive(Eq)]
+    pub struct OracleOptions {
+        /// The metric that it maximises, or minimises if it is a cost.
+        pub metric: String = "rescuees.total".to_owned(),
+        /// How far it looks ahead.
+        pub horizon: Horizon = Horizon::Round,
+        /// The policy that decides after the round, if the horizon is the trial.
+        pub then: String = "RNE".to_owned(),
+        /// Largest number of assignments that it plays for one decision.
+        pub limit: u64 = DEFAULT_LIMIT,
+        /// Which assignment it chooses.
+        pub pick: Pick = Pick::Best,
     }
 }
 
@@ -83,7 +72,7 @@ pub fn kind() -> PolicyKind {
 impl Oracle {
     /// Takes the options; the policy that decides the rest of the trial comes from this registry.
     fn new(options: OracleOptions, registry: &Registry) -> Result<Self, String> {
-        if !(2..=1_000_000).contains(&options.limit) {
+        if !LIMITS.contains(&options.limit) {
             return Err(format!("limit must be from 2 to 1000000, found {}", options.limit));
         }
         let onwards = (options.horizon == Horizon::Trial).then(|| registry.parse(&options.then));
@@ -96,6 +85,14 @@ impl Driver for Oracle {
     fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
         let onwards = self.onwards.as_ref().map(MadePolicy::open).transpose()?;
         Ok(Box::new(OracleSession { options: self.options.clone(), onwards }))
+    }
+
+    fn program(&self) -> Option<String> {
+        self.onwards.as_ref().and_then(|then| then.it.program())
+    }
+
+    fn permission(&self) -> Result<(), PolicyError> {
+        self.onwards.as_ref().map_or(Ok(()), |then| then.it.permission())
     }
 
     fn basis(&self) -> Basis {

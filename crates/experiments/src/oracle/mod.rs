@@ -11,6 +11,8 @@ mod decider;
 mod objective;
 mod survey;
 
+use std::ops::RangeInclusive;
+
 pub use branch::{Branch, BranchError, Outcome, advance_to, play};
 pub use decider::{Horizon, Oracle, OracleOptions, kind};
 pub use objective::{Objective, UnknownObjective};
@@ -18,3 +20,6 @@ pub use survey::{Coverage, Evaluation, Standing, Survey, survey};
 
 /// Largest number of assignments that are played, unless another limit is given.
 pub const DEFAULT_LIMIT: u64 = 1_000;
+
+/// The limits that can be asked for. All assignments are in memory at once.
+pub const LIMITS: RangeInclusive<u64> = 2..=1_000_000;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use rne_core::{Assignment, Question, assignments};
+use teaming::{Assignment, Question, assignments};
 
 use super::branch::{BranchError, Outcome};
 use super::objective::Objective;

@@ -1,8 +1,8 @@
 //! The analysis of a study of regret.
 
-use rne_core::{Assignment, MadeMeasure, Registry};
 use serde::Serialize;
 use store::Failure;
+use teaming::{Assignment, MadeMeasure, Registry};
 
 use super::features::{FEATURES, values};
 use super::study::{PlayedTrial, StudyFolder};
@@ -157,7 +157,7 @@ pub fn analyse(folder: &StudyFolder, criteria: &Criteria, registry: &Registry) -
     let specs = folder.study.specs(registry)?;
     let labels: Vec<&str> = specs.iter().map(|spec| spec.label.as_str()).collect();
     let (mut looked, mut rows) = (Vec::new(), Vec::new());
-    for trial in &folder.trials {
+    for trial in &folder.folder.entries {
         for decision in &trial.decisions {
             let survey = decision.survey();
             let choice = |spec: &PolicySpec| spec.made().decide(&decision.question).ok();

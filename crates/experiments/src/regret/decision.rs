@@ -1,9 +1,9 @@
 //! One decision of a study: the question, and the outcome of every assignment.
 
-use rne_core::{
+use serde::{Deserialize, Serialize};
+use teaming::{
     Asked, Assignment, Deadline, Decision, Member, PolicyError, Question, Session, TrialStart, assignments,
 };
-use serde::{Deserialize, Serialize};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use crate::oracle::{BranchError, Coverage, Evaluation, Objective, Outcome, Survey, play, survey};
@@ -20,7 +20,7 @@ pub struct PlayedDecision {
     /// The assignment that the trial went on with.
     pub chosen: Assignment,
     /// The assignments that were played; `None` for all that the quotas allow, in the order of
-    /// [`rne_core::assignments::all`].
+    /// [`teaming::assignments::all`].
     pub sample: Option<Sample>,
     /// The outcome of each assignment.
     pub outcomes: Vec<Outcome>,

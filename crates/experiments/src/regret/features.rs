@@ -1,6 +1,6 @@
 //! Features of an assignment that may predict the outcome: of the team as it really is before the decision.
 
-use rne_core::{Assignment, MadeMeasure, Member, Question, TeamTrust};
+use teaming::{Assignment, MadeMeasure, Member, Question, TeamTrust};
 
 use crate::rounds::{energy, hp};
 

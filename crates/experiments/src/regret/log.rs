@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rne_core::Assignment;
 use serde::{Deserialize, Serialize};
 use store::lock::Lock;
 use store::{Failure, Header, Log, at};
+use teaming::Assignment;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::oracle::Outcome;
@@ -88,7 +88,7 @@ impl OutcomeLog {
     pub fn open(folder: &Path, key: &DecisionKey) -> Result<Self, Failure> {
         let path = key.path(folder);
         std::fs::create_dir_all(folder).map_err(at(folder))?;
-        let lock = Arc::new(Lock::of_file(&path, &mut |_| {})?);
+        let lock = Arc::new(Lock::of_file(&path)?);
         let (log, entries) = Log::resume(&path, &key.header(), lock)?;
         Ok(Self { log: Some(log), known: known(entries) })
     }

@@ -1,21 +1,20 @@
 //! The study of regret: trials in which every assignment is played at every decision, in a folder that
 //! survives interruptions.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
-use rne_core::{Deadline, Registry};
 use ron_tree::without_types;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
-use store::{Failure, Log, refuse};
+use store::{Failure, refuse};
+use teaming::{Deadline, Registry};
 use usar_sim::simulation::Simulation;
 
 use super::decision::{Plan, PlayedDecision, play_decisions};
 use crate::experiment::{Experiment, PolicySpec, Program};
-use crate::job::Job;
+use crate::job::{Job, JobFolder};
 use crate::metric::task_names;
 use crate::oracle::{BranchError, Objective};
 
@@ -118,13 +117,10 @@ impl Study {
 
 /// The folder of a study.
 pub struct StudyFolder {
-    path: PathBuf,
+    /// The folder, with the finished trials by number.
+    pub folder: JobFolder<PlayedTrial>,
     /// The study in the folder.
     pub study: Study,
-    /// The finished trials, by number.
-    pub trials: Vec<PlayedTrial>,
-    /// Absent if the folder was opened for reading.
-    log: Option<Log>,
 }
 
 impl StudyFolder {
@@ -134,8 +130,7 @@ impl StudyFolder {
     /// The folder holds something else, another study, or a study of another program.
     pub fn open(path: &Path, study: &Study) -> Result<Self, Failure> {
         let origin = serde_json::to_value(study).map_err(Failure::run)?;
-        let (log, trials, origin) = JOB.open(path, origin, false)?;
-        Ok(Self { log: Some(log), ..Self::of(path, origin, trials)? })
+        Self::of(JOB.open(path, origin, false)?)
     }
 
     /// Reads the folder of a study. The program that made it may be another one.
@@ -143,24 +138,19 @@ impl StudyFolder {
     /// # Errors
     /// It is not the folder of a study, or its log was changed.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let (origin, trials) = JOB.read(path)?;
-        Self::of(path, origin, trials)
+        Self::of(JOB.read(path)?)
     }
 
-    fn of(path: &Path, origin: Value, mut trials: Vec<PlayedTrial>) -> Result<Self, Failure> {
-        let bad = |error: serde_json::Error| {
-            let error = without_types(&error);
-            let (path, noun) = (path.display(), JOB.noun);
-            Failure::input(format!("{path}: is not the folder of a {noun}: {}: {error}", JOB.origin))
-        };
-        let study: Study = serde_json::from_value(origin).map_err(bad)?;
-        trials.sort_by_key(|trial| trial.trial);
-        Ok(Self { path: path.to_owned(), study, trials, log: None })
+    fn of(mut folder: JobFolder<PlayedTrial>) -> Result<Self, Failure> {
+        let study = serde_json::from_value(folder.origin.clone());
+        let study = study.map_err(|error| JOB.is_none(&folder.path, without_types(&error)))?;
+        folder.entries.sort_by_key(|trial| trial.trial);
+        Ok(Self { folder, study })
     }
 
     /// Numbers of the missing trials.
     pub fn missing(&self) -> Vec<u32> {
-        let is_there = |number: &u32| self.trials.iter().any(|trial| trial.trial == *number);
+        let is_there = |number: &u32| self.folder.entries.iter().any(|trial| trial.trial == *number);
         (1..=self.study.seeds.len() as u32).filter(|number| !is_there(number)).collect()
     }
 
@@ -175,26 +165,15 @@ impl StudyFolder {
         done: impl Fn() + Sync,
     ) -> Result<(), Failure> {
         let specs = self.study.specs(&experiment.registry)?;
-        let (missing, study) = (self.missing(), &self.study);
-        let log = self.log.as_mut().ok_or_else(|| Failure::run("the study was opened for reading"))?;
-        let shared = Mutex::new((log, Vec::new()));
+        let (missing, study, folder) = (self.missing(), &self.study, Mutex::new(&mut self.folder));
         missing.into_par_iter().try_for_each(|number| {
             let trial = play_trial(study, experiment, &specs, number, halt)?;
-            let mut shared = shared.lock().map_err(|_| Failure::run("a thread panicked"))?;
-            shared.0.add(&[&trial])?;
-            shared.1.push(trial);
+            folder.lock().map_err(|_| Failure::run("a thread panicked"))?.add(vec![trial])?;
             done();
             Ok::<(), Failure>(())
         })?;
-        let (_, played) = shared.into_inner().map_err(|_| Failure::run("a thread panicked"))?;
-        self.trials.extend(played);
-        self.trials.sort_by_key(|trial| trial.trial);
+        self.folder.entries.sort_by_key(|trial| trial.trial);
         Ok(())
-    }
-
-    /// Path of the folder.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 }
 

@@ -42,9 +42,9 @@ pub fn levels(label: &str, rounds: &[Round]) -> Vec<GroupLevels> {
 }
 
 /// Mean energy and HP of a task's group; `None` if the group is empty.
-pub fn mean_levels(round: &Round, task: rne_core::TaskId) -> Option<[f64; 2]> {
+pub fn mean_levels(round: &Round, task: teaming::TaskId) -> Option<[f64; 2]> {
     let members: Vec<_> = round.group(task).collect();
-    let mean = |value: fn(&rne_core::Member) -> f64| {
+    let mean = |value: fn(&teaming::Member) -> f64| {
         members.iter().map(|member| value(member)).sum::<f64>() / members.len() as f64
     };
     (!members.is_empty()).then(|| [mean(energy), mean(hp)])

@@ -1,15 +1,13 @@
 //! Rounds as question and answer: what a split amounts to, and how another policy would have split the same
 //! team.
 
-mod blindness;
 mod levels;
 mod sizes;
 mod sorting;
 
-use rne_core::{Assignment, Decision, MadePolicy, Member, Question, RoleId, TaskId};
 use store::Failure;
+use teaming::{Assignment, Decision, MadePolicy, Member, Question, RoleId, TaskId};
 
-pub use blindness::{Blindness, Example, Pair};
 pub use levels::{GroupLevels, levels, mean_levels};
 pub use sizes::{OddSizes, odd_sizes};
 pub use sorting::{KEYS, Key, Share, SortingAgreement, agreement};
@@ -102,21 +100,20 @@ impl Round {
 }
 
 /// Battery level of a member, in percent.
-pub(crate) fn energy(member: &Member) -> f64 {
+pub fn energy(member: &Member) -> f64 {
     member.energy_level.unwrap_or(0.0)
 }
 
 /// Health level of a member, in percent.
-pub(crate) fn hp(member: &Member) -> f64 {
+pub fn hp(member: &Member) -> f64 {
     member.hp_level.unwrap_or(0.0)
 }
 
 #[cfg(test)]
 pub(crate) mod testing {
-    use rne_core::question::hardest_first;
-    use rne_core::{
-        Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
-    };
+    use rne_core::NeedVector;
+    use teaming::question::hardest_first;
+    use teaming::{Decision, Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
 
     use super::Round;
 

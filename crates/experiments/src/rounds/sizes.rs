@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use rne_core::{AssignmentError, GroupSizes, Quota};
 use store::Failure;
+use teaming::{AssignmentError, GroupSizes, Quota};
 
 use super::{Round, rounds_of};
 use crate::sweep::folder::Folder;

@@ -1,6 +1,6 @@
 //! How similar splits are to sorting: each role sorted by a level, the upper half against the lower half.
 
-use rne_core::{Member, RoleId, TaskId};
+use teaming::{Member, RoleId, TaskId};
 
 use super::{Round, energy, hp};
 

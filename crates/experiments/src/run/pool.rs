@@ -21,6 +21,9 @@ const WATCH_PERIOD: Duration = Duration::from_millis(100);
 /// How often a shorter time limit is checked, at most.
 const LEAST_WATCH_PERIOD: Duration = Duration::from_millis(1);
 
+/// A longer time between two looks is one in which this process slept.
+const LONGEST_LOOK: Duration = Duration::from_secs(5);
+
 /// How long a trial that exceeded its time may take to give up, before its thread is abandoned.
 const GRACE: Duration = Duration::from_secs(1);
 
@@ -64,6 +67,8 @@ struct Pool {
     workers: usize,
     threads: Vec<JoinHandle<()>>,
     running: BTreeMap<usize, Running>,
+    /// When the time of the trials was looked at last.
+    looked: Instant,
 }
 
 /// Runs all trials and hands each outcome to `done` as it arrives, in any order. A trial that exceeds the
@@ -97,12 +102,13 @@ pub fn run_batches(
     let mut left = keys.len();
     let (sender, receiver) = channel();
     let queue = Arc::new(Mutex::new(Box::new(keys) as Queue));
-    let mut pool = Pool { queue, run, sender, workers: 0, threads: Vec::new(), running: BTreeMap::new() };
+    let (threads, running, looked) = (Vec::new(), BTreeMap::new(), Instant::now());
+    let mut pool = Pool { queue, run, sender, workers: 0, threads, running, looked };
     for _ in 0..limits.jobs.min(left) {
         pool.start_worker()?;
     }
     while left > 0 {
-        let outcomes = pool.next_outcomes(&receiver, limits.trial)?;
+        let outcomes = pool.next_outcomes(&receiver, limits.trial, stop)?;
         left -= outcomes.len();
         if !outcomes.is_empty()
             && let Err(failure) = done(outcomes)
@@ -177,19 +183,25 @@ impl Pool {
         &mut self,
         receiver: &Receiver<Message>,
         longest: Option<Duration>,
+        stop: &AtomicBool,
     ) -> Result<Vec<Outcome>, Failure> {
         let mut outcomes = Vec::new();
         // All messages are read before any trial is declared late.
         let period = longest.map_or(WATCH_PERIOD, |longest| longest.clamp(LEAST_WATCH_PERIOD, WATCH_PERIOD));
         let first = receiver.recv_timeout(period).ok();
+        self.forgive_sleep();
         for message in first.into_iter().chain(receiver.try_iter()) {
             match message {
                 Message::Started(worker, key, [halt, is_abandoned]) => {
                     let since = Instant::now();
                     self.running.insert(worker, Running { key, since, halted: None, halt, is_abandoned });
                 }
-                // The outcome of an abandoned worker is dropped.
+                // The outcome of an abandoned worker is dropped, as is that of a trial that was stopped with
+                // the run.
                 Message::Ended(worker, outcome) => {
+                    if stop.load(Ordering::Relaxed) && is_halted(&outcome) {
+                        continue;
+                    }
                     let ended = self.running.remove(&worker).map(|_| ended(*outcome, longest));
                     outcomes.extend(ended);
                 }
@@ -212,6 +224,13 @@ impl Pool {
         Ok(outcomes)
     }
 
+    /// Leaves out of the times of the trials what this process slept, as it does after a SIGSTOP.
+    fn forgive_sleep(&mut self) {
+        let slept = self.looked.elapsed().saturating_sub(LONGEST_LOOK);
+        self.running.values_mut().for_each(|running| running.since += slept);
+        self.looked = Instant::now();
+    }
+
     /// Starts no further trial, and tells the running trials to end soon.
     fn halt(&self) {
         if let Ok(mut queue) = self.queue.lock() {
@@ -221,11 +240,16 @@ impl Pool {
     }
 }
 
+/// Whether a trial ended because it was told to.
+fn is_halted(outcome: &Outcome) -> bool {
+    outcome.result.as_ref().is_err_and(|fault| [HALTED, UNANSWERED].contains(&fault.reason.as_str()))
+}
+
 /// The outcome of a trial that may have been told to halt because it was late.
 fn ended(outcome: Outcome, longest: Option<Duration>) -> Outcome {
     match (&outcome.result, longest) {
         // A policy may have a limit of its own, and says so.
-        (Err(fault), Some(longest)) if [HALTED, UNANSWERED].contains(&fault.reason.as_str()) => {
+        (Err(fault), Some(longest)) if is_halted(&outcome) => {
             let result = Err(timed_out(longest, &fault.reason));
             Outcome { result, ..outcome }
         }
@@ -244,7 +268,7 @@ fn timed_out(longest: Duration, reason: &str) -> Fault {
 mod tests {
     use std::path::Path;
 
-    use rne_core::{Asked, Decision, PolicyError, Session};
+    use teaming::{Asked, Decision, PolicyError, Session};
     use usar_sim::scenario::Scenario;
 
     use super::super::trial::{TrialSetup, run_trial};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use rne_core::{Basis, Driver, PolicyError, Session};
+use teaming::{Basis, Driver, PolicyError, Session};
 
 /// The open sessions of a worker, by the number of their policy in the sweep.
 #[derive(Default)]

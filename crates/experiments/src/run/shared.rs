@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use rne_core::{Asked, Basis, Deadline, Session};
+use teaming::{Asked, Basis, Deadline, Session};
 use usar_sim::record::DecisionRecord;
 
 use super::sessions::Player;

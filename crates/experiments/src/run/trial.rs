@@ -2,9 +2,9 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use rne_core::{Deadline, PolicyError, Session, TrialStart};
 use ron_tree::Problem;
 use serde::{Deserialize, Serialize};
+use teaming::{Deadline, PolicyError, Session, TrialStart};
 use usar_sim::event::Event;
 use usar_sim::fit::Tables;
 use usar_sim::record::{Status, TrialRecord};

@@ -82,7 +82,7 @@ fn first_step(recorded: &Outcome, again: &Outcome, experiment: &Experiment) -> O
         return None;
     }
     if let Some((before, now)) = before.iter().zip(&now).find(|(before, now)| before != now) {
-        let time_s = now.step as f64 * experiment.cases[again.key.case].scenario.step_s();
+        let time_s = now.step as f64 * experiment.cases[again.key.case].scenario.dt_s;
         let parts = before.differing_parts(now).join(", ");
         let parts = if parts.is_empty() { "the chain only".to_owned() } else { parts };
         return Some(format!("differs first at step {} ({time_s:.2} s), in: {parts}", now.step));

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use rne_core::arrow::Written;
-use rne_core::{PolicyKind, Registry};
 use store::Failure;
 use store::files::{self, FileHash, NewFile, file_hash, sync_folder};
+use teaming::arrow::Written;
+use teaming::{PolicyKind, Registry};
 use usar_sim::scenario::Scenario;
 
 use super::dictionary::dictionary;
@@ -48,7 +48,7 @@ pub(super) fn inputs(experiment: &Experiment) -> Result<[(&'static str, String);
 
 /// The names of the files that a manifest lists.
 fn listed(manifest: &Manifest) -> Vec<&'static str> {
-    let tables = tables_of(manifest.keep, manifest.shard).iter().copied();
+    let tables = tables_of(manifest.keep, manifest.shard);
     let made = tables.chain([journal::ARCHIVE]).filter(|_| manifest.is_complete);
     INPUTS.into_iter().chain(made).collect()
 }

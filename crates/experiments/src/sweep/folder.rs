@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rne_core::Registry;
+use teaming::Registry;
 
 use store::{Failure, at};
 
@@ -32,6 +32,7 @@ use super::owned::{check_may_be_cleared, clear, remove_unfinished};
 use super::store::{Order, Store, thaw};
 use super::tables::TRIALS;
 use crate::experiment::{Experiment, Place, Shard};
+use crate::job::interrupted;
 use crate::provenance::Manifest;
 use crate::run::{Outcome, TrialKey};
 
@@ -55,6 +56,8 @@ pub struct Opening {
     pub shard: Option<Shard>,
     /// Start over: delete an existing sweep.
     pub is_fresh: bool,
+    /// Take no lock: the user knows that no other process writes there.
+    pub has_no_lock: bool,
 }
 
 impl Folder {
@@ -72,7 +75,8 @@ impl Folder {
         let trouble = |error| Failure::storage(format!("cannot write to {}: {error}", path.display()));
         fs::create_dir_all(path).map_err(trouble)?;
         path.parent().map_or(Ok(()), files::sync_folder)?;
-        let lock = Some(Arc::new(Lock::of_folder(path, say)?));
+        let lock = if opening.has_no_lock { Lock::none() } else { Lock::of_folder(path)? };
+        let lock = Some(Arc::new(lock));
         if opening.is_fresh {
             check_may_be_cleared(path)?;
             clear(path).map_err(trouble)?;
@@ -294,9 +298,6 @@ impl Folder {
 
     /// The message after an interruption.
     pub fn interrupted(&self) -> Failure {
-        let (done, path) = (self.results.len(), self.path.display());
-        Failure::Interrupted(format!(
-            "stopped; {done} finished trials are in {path}, and the same command goes on"
-        ))
+        interrupted(&self.path, format!("{} finished trials are", self.results.len()))
     }
 }

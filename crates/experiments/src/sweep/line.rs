@@ -1,9 +1,9 @@
 //! A finished trial as a line of the journal.
 
-use rne_core::Account;
 use ron_tree::{Problem, without_types};
 use serde::{Deserialize, Serialize};
 use store::Failure;
+use teaming::Account;
 use thiserror::Error;
 
 use super::links;

@@ -2,9 +2,6 @@
 
 use usar_sim::hash::{HashChain, Link, PARTS};
 
-/// Name of the table.
-pub const FILE: &str = "hashes.csv";
-
 fn link_of(step: u64, digest: &str, digits: &str) -> Option<Link> {
     let digest = u128::from_str_radix(digest, 16).ok()?;
     let mut parts = [0; PARTS.len()];

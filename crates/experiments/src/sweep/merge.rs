@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use rne_core::Registry;
 use store::{Failure, refuse};
+use teaming::Registry;
 
 use super::folder::{Folder, Opening};
 use super::host::Hosts;
+use super::names::AGAIN;
 use super::shards::Shards;
 use super::store::{Order, Store};
 use crate::experiment::{Experiment, Place, Shard};
@@ -22,6 +23,8 @@ const NOBODY: u32 = u32::MAX;
 /// Shards that together form a sweep.
 pub struct Merge {
     experiment: Arc<Experiment>,
+    /// Whether the shards check every invariant.
+    is_checked: bool,
     parts: Vec<Part>,
     order: Order,
     /// For each trial, in order, the number of the shard that has it.
@@ -46,7 +49,7 @@ impl Merge {
     pub fn of(folders: &[PathBuf], registry: &Registry) -> Result<Self, Failure> {
         let [first, ..] = folders else { refuse!("there is nothing to merge") };
         let shards = Shards::like(first, registry)?;
-        let experiment = Arc::clone(shards.experiment());
+        let (experiment, is_checked) = (Arc::clone(shards.experiment()), shards.is_checked());
         let part = |path: &PathBuf| {
             let folder = shards.read(path)?;
             let shard = folder.manifest().shard;
@@ -56,7 +59,7 @@ impl Merge {
         let parts = folders.iter().map(part).collect::<Result<Vec<_>, Failure>>()?;
         let order = Order::of(&experiment, None);
         let owners = vec![NOBODY; order.count()];
-        let mut merge = Self { experiment, parts, order, owners };
+        let mut merge = Self { experiment, is_checked, parts, order, owners };
         merge.find_owners()?;
         merge.check_complete()?;
         Ok(merge)
@@ -87,7 +90,8 @@ impl Merge {
         Err(Failure::input(format!("{one} and {two} disagree about trial {trial} of {label} (seed {seed})")))
     }
 
-    /// Refuses shards that lack a trial. The message names the missing shards and the first missing trials.
+    /// Refuses shards that lack a trial. The message names the first missing trials, the shards to which they
+    /// belong, and how these are run.
     fn check_complete(&self) -> Result<(), Failure> {
         let count = self.owners.iter().filter(|owner| **owner == NOBODY).count();
         if count == 0 {
@@ -101,20 +105,29 @@ impl Merge {
         };
         let named = missing.take(MAX_NAMED).map(name).collect::<Vec<_>>().join(", ");
         let more = if count > MAX_NAMED { ", ..." } else { "" };
-        Err(Failure::input(format!("{}missing trials, {count}: {named}{more}", self.absent_shards())))
+        let (shards, lines): (Vec<String>, Vec<String>) = self.missing_shards().into_iter().unzip();
+        let whose = if shards.is_empty() { String::new() } else { format!("shard {}: ", shards.join(", ")) };
+        Err(Failure::input(format!("{whose}missing trials, {count}: {named}{more}{}", lines.concat())))
     }
 
-    /// The missing shards, in words; empty if none is missing.
-    fn absent_shards(&self) -> String {
-        let there: Vec<Shard> = self.parts.iter().filter_map(|part| part.shard).collect();
-        let Some(first) = there.first() else { return String::new() };
-        let is_there =
-            |number: &u32| there.iter().any(|shard| shard.of == first.of && shard.number == *number);
-        let absent: Vec<String> = (1..=first.of)
-            .filter(|number| !is_there(number))
-            .map(|number| format!("{number}/{}", first.of))
-            .collect();
-        if absent.is_empty() { String::new() } else { format!("shard {} is not there: ", absent.join(", ")) }
+    /// The shards that lack a trial, each with the line that runs it.
+    fn missing_shards(&self) -> Vec<(String, String)> {
+        let of = self.parts.iter().find_map(|part| part.shard).map_or(0, |shard| shard.of);
+        let is_missing = |place| self.order.rank(place).is_some_and(|rank| self.owners[rank] == NOBODY);
+        let all = (1..=of).map(|number| Shard { number, of });
+        let missing = all.filter(|shard| self.experiment.places(Some(*shard)).any(is_missing));
+        missing.map(|shard| (format!("{}/{of}", shard.number), self.again(shard))).collect()
+    }
+
+    /// The command that runs a shard, on a line of its own.
+    fn again(&self, shard: Shard) -> String {
+        let first = &self.parts[0].path;
+        let there = self.parts.iter().find(|part| part.shard == Some(shard));
+        let out =
+            there.map_or_else(|| first.with_file_name(shard.number.to_string()), |part| part.path.clone());
+        let check = if self.is_checked { " --check" } else { "" };
+        let (file, out, Shard { number, of }) = (first.join(AGAIN), out.display(), shard);
+        format!("\n  usar sweep {} --shard {number}/{of}{check} --out {out}", file.display())
     }
 
     /// Writes the whole sweep to a folder; no trial is held in memory twice. Messages go to `say`.

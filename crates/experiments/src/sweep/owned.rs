@@ -13,7 +13,7 @@ use store::{Failure, at, refuse};
 use tempfile::{SpooledTempFile, spooled_tempfile_in};
 
 use super::names::{INPUTS, MANIFEST, PLOTS, RECORDINGS, REPORT};
-use super::tables::{PARQUETS, TABLES};
+use super::tables::TABLES;
 use super::{host, journal};
 
 /// The file that lists the names of the files that a report wrote, one on each line, relative to the
@@ -26,12 +26,12 @@ const RECORDING: &str = ".usrec";
 /// The names of all files that a sweep writes.
 fn known_names() -> impl Iterator<Item = &'static str> {
     let logs = [MANIFEST, journal::FILE, journal::ARCHIVE, host::FILE];
-    logs.into_iter().chain(INPUTS).chain(TABLES).chain(PARQUETS)
+    logs.into_iter().chain(INPUTS).chain(TABLES.into_iter().flat_map(|[csv, parquet, _]| [csv, parquet]))
 }
 
 /// Deletes the Parquet files, because they would belong to other tables.
 pub(super) fn remove_parquets(path: &Path) -> std::io::Result<()> {
-    PARQUETS.iter().try_for_each(|name| files::remove(&path.join(name)))
+    TABLES.iter().try_for_each(|[_, parquet, _]| files::remove(&path.join(parquet)))
 }
 
 /// Refuses to start over in a folder with files that neither a sweep nor a report has written.

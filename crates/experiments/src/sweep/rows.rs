@@ -1,10 +1,10 @@
 //! The columns of the tables that a sweep writes, and what a row of each is.
 
-use rne_core::decision::Protocol;
-use rne_core::question::{Member, Question};
-use rne_core::{Account, TaskId};
 use tables::Kind::{Natural, Number, Text};
 use tables::{About, Cell, Column, Columns, columns};
+use teaming::decision::Protocol;
+use teaming::question::{Member, Question};
+use teaming::{Account, TaskId};
 use usar_sim::event::ReturnCause;
 use usar_sim::hash::Link;
 use usar_sim::metrics::RoundRecord;
@@ -138,17 +138,20 @@ impl<'a> TrialRow<'a> {
     }
 }
 
-/// The columns with the trial of a row.
-fn of_trial<'a, T: 'a>() -> Columns<Of<'a, T>> {
-    columns! { Of<T>:
+/// Rows about parts of a trial.
+pub(super) fn of<T>(key: &TrialKey, parts: impl IntoIterator<Item = T>) -> impl Iterator<Item = Of<'_, T>> {
+    parts.into_iter().map(move |it| Of { key, it })
+}
+
+/// Columns behind those with the trial of a row.
+fn with_trial<'a, T: 'a>(own: impl IntoIterator<Item = Column<Of<'a, T>>>) -> Columns<Of<'a, T>> {
+    let mut columns = columns! { Of<T>:
         "policy", Text, "", POLICY, |row| row.key.label.clone();
         "trial", Natural, "", TRIAL, |row| row.key.trial;
         "seed", Natural, "", SEED, |row| row.key.seed;
-    }
-}
-
-fn with_trial<'a, T: 'a>(own: impl IntoIterator<Item = Column<Of<'a, T>>>) -> Columns<Of<'a, T>> {
-    of_trial().into_iter().chain(own).collect()
+    };
+    columns.extend(own);
+    columns
 }
 
 const ROUND: &str = "Number of the round, from 1.";
@@ -201,14 +204,6 @@ fn protocol(row: &RoundRow) -> Option<Protocol> {
     }
 }
 
-/// The rows of `rounds.csv` of a trial.
-pub(super) fn round_rows<'a>(
-    key: &'a TrialKey,
-    record: &'a TrialRecord,
-) -> impl Iterator<Item = RoundRow<'a>> {
-    record.rounds.iter().map(move |round| Of { key, it: (record, round) })
-}
-
 /// The columns of `robots.csv`.
 pub(super) fn robots<'a>() -> Columns<RobotRow<'a>> {
     let waiting = "Time in which the robot stood because of others.";
@@ -233,14 +228,6 @@ pub(super) fn robots<'a>() -> Columns<RobotRow<'a>> {
     })
 }
 
-/// The rows of `robots.csv` of a trial.
-pub(super) fn robot_rows<'a>(
-    key: &'a TrialKey,
-    record: &'a TrialRecord,
-) -> impl Iterator<Item = RobotRow<'a>> {
-    record.robots.iter().map(move |it| Of { key, it })
-}
-
 /// The columns of `groups.csv`.
 pub(super) fn groups<'a>(needs: &[NeedFile]) -> Columns<GroupRow<'a>> {
     let energy = "Battery level when the robot was grouped.";
@@ -263,17 +250,14 @@ pub(super) fn groups<'a>(needs: &[NeedFile]) -> Columns<GroupRow<'a>> {
     columns
 }
 
-/// The rows of `groups.csv` of a trial.
-pub(super) fn group_rows<'a>(
-    key: &'a TrialKey,
-    record: &'a TrialRecord,
-) -> impl Iterator<Item = GroupRow<'a>> + 'a {
+/// The robots of a trial each time that they were grouped.
+pub(super) fn grouped(record: &TrialRecord) -> impl Iterator<Item = Grouped<'_>> {
     record.decisions.iter().flat_map(move |decided| {
         let question = &decided.question;
         question.task_ids().flat_map(move |task| {
             let group = decided.decision.assignment.of(task);
             let members = decided.team().iter().filter(move |member| group.contains(&member.id));
-            members.map(move |member| Of { key, it: Grouped { question, task, member } })
+            members.map(move |member| Grouped { question, task, member })
         })
     })
 }
@@ -292,14 +276,9 @@ pub(super) fn series<'a>(metrics: &Catalogue) -> Columns<MomentRow<'a>> {
     with_trial(time.into_iter().chain(rescuees))
 }
 
-/// The rows of `series.csv` of a trial.
-pub(super) fn series_rows<'a>(
-    key: &'a TrialKey,
-    found: &'a Trial,
-    duration_s: f64,
-) -> impl Iterator<Item = MomentRow<'a>> {
-    let delivered = |time_s| Delivered { time_s, of_tasks: found.delivered(time_s) };
-    series_times(duration_s).map(move |time_s| Of { key, it: delivered(time_s) })
+/// The deliveries of a trial over time.
+pub(super) fn delivered(trial: &Trial, duration_s: f64) -> impl Iterator<Item = Delivered> + '_ {
+    series_times(duration_s).map(|time_s| Delivered { time_s, of_tasks: trial.delivered(time_s) })
 }
 
 /// The columns of `hashes.csv`: a link of a trial's hash chain.
@@ -316,11 +295,6 @@ pub(super) fn links<'a>() -> Columns<LinkRow<'a>> {
     columns
 }
 
-/// The rows of `hashes.csv` of a trial.
-pub(super) fn link_rows<'a>(key: &'a TrialKey, record: &'a TrialRecord) -> impl Iterator<Item = LinkRow<'a>> {
-    record.chain.links().iter().map(move |it| Of { key, it })
-}
-
 /// The columns of `links.csv`: a link over the medium.
 pub(super) fn radio<'a>() -> Columns<RadioRow<'a>> {
     let to = "The group-mate that was to hear it; empty for the base.";
@@ -332,13 +306,4 @@ pub(super) fn radio<'a>() -> Columns<RadioRow<'a>> {
         "heard", Natural, "", "Messages that were not lost.", |row| row.it.heard;
         "delay_s", Number, "s", delay, |row| row.it.delay_s;
     })
-}
-
-/// The rows of `links.csv` of a trial.
-pub(super) fn radio_rows<'a>(
-    key: &'a TrialKey,
-    record: &'a TrialRecord,
-) -> impl Iterator<Item = RadioRow<'a>> {
-    let links = record.heard.iter().flat_map(|heard| &heard.links);
-    links.filter(|link| link.sent > 0).map(move |it| Of { key, it })
 }

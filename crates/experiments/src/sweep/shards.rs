@@ -1,18 +1,15 @@
-//! The shards of one sweep: `usar cluster merge` takes them from here, and `usar cluster status` counts them
-//! here, so that neither believes a folder that the other refuses.
+//! The shards of one sweep, for `usar cluster merge`.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rne_core::Registry;
-use store::lock::{Holder, holder};
-use store::{Failure, at};
+use store::Failure;
+use teaming::Registry;
 
 use super::disk::{experiment_of, manifest_in, resolved_in};
 use super::folder::Folder;
-use super::journal;
-use crate::experiment::{Experiment, PolicySpec, Program, Shard};
-use crate::provenance::{Manifest, part, scenario_differences};
+use crate::experiment::{Experiment, PolicySpec, Program};
+use crate::provenance::{Manifest, scenario_differences};
 
 /// The sweep that shards belong to, known from one of them.
 pub struct Shards<'r> {
@@ -21,17 +18,6 @@ pub struct Shards<'r> {
     experiment: Arc<Experiment>,
     resolved: String,
     registry: &'r Registry,
-}
-
-/// How far a shard is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Progress {
-    /// Number of its finished trials.
-    pub finished: usize,
-    /// Whether its tables are made.
-    pub is_complete: bool,
-    /// The process that works in its folder now.
-    pub holder: Option<Holder>,
 }
 
 impl<'r> Shards<'r> {
@@ -52,9 +38,9 @@ impl<'r> Shards<'r> {
         &self.experiment
     }
 
-    /// The manifest of the first shard.
-    pub fn manifest(&self) -> &Manifest {
-        &self.manifest
+    /// Whether the first shard checks every invariant.
+    pub fn is_checked(&self) -> bool {
+        self.manifest.is_checked
     }
 
     /// Reads a folder of the sweep.
@@ -66,31 +52,17 @@ impl<'r> Shards<'r> {
         check_same(&self.first, path, &self.manifest, &there, &self.resolved)?;
         Folder::read(path, self.registry)
     }
-
-    /// How far the shard in a folder is. A shard whose journal is not there yet has no finished trial.
-    ///
-    /// # Errors
-    /// Those of [`Shards::read`], or the folder is of another part of the sweep.
-    pub fn progress(&self, path: &Path, shard: Option<Shard>) -> Result<Progress, Failure> {
-        let there = manifest_in(path)?;
-        if there.shard != shard {
-            let (expected, found) = (part(shard), there.part());
-            return Err(Failure::input(format!("{}: must be {expected}, found {found}", path.display())));
-        }
-        let holder = holder(path).map_err(at(path))?;
-        if !there.is_complete && !path.join(journal::FILE).exists() {
-            check_same(&self.first, path, &self.manifest, &there, &self.resolved)?;
-            return Ok(Progress { finished: 0, is_complete: false, holder });
-        }
-        let finished = self.read(path)?.results().len();
-        Ok(Progress { finished, is_complete: there.is_complete, holder })
-    }
 }
 
-/// Refuses shards of another program than this one.
+/// Refuses shards of another program than this one. Policies that are programs of their own are compared
+/// among the shards alone.
 fn check_program(path: &Path, there: &Manifest, policies: &[PolicySpec]) -> Result<(), Failure> {
-    let this = Program::running(policies)?;
-    let that = there.program();
+    let (mut this, that) = (Program::running(policies)?, there.program());
+    for ((this, that), policy) in this.policies.iter_mut().zip(&that.policies).zip(policies) {
+        if policy.made().it.program().is_some() {
+            this.clone_from(that);
+        }
+    }
     if that == this {
         return Ok(());
     }

@@ -4,34 +4,38 @@ use std::path::Path;
 
 use store::Failure;
 use store::files::{FileHash, NewFile};
-use tables::{About, Csv, abouts};
+use tables::{About, Columns, Csv, abouts};
 
 use super::line::Finished;
-use super::links;
 use super::rows::{self, TrialRow};
 use crate::experiment::{Experiment, Keep, Shard};
 
 /// The table that every folder has.
 pub(super) const TRIALS: &str = "trials.csv";
 
-/// Names of the tables, from the tables that every sweep keeps to those that take the most room.
-pub(super) const TABLES: [&str; 7] =
-    [TRIALS, "rounds.csv", "robots.csv", "groups.csv", "series.csv", links::FILE, "links.csv"];
-
-/// The same tables as Parquet files, in the order of the tables.
-pub(super) const PARQUETS: [&str; TABLES.len()] = [
-    "trials.parquet",
-    "rounds.parquet",
-    "robots.parquet",
-    "groups.parquet",
-    "series.parquet",
-    "hashes.parquet",
-    "links.parquet",
+/// The tables, from those that every sweep keeps to those that take the most room: each with its file, the
+/// file of the same table as Parquet, and what a row is.
+pub(super) const TABLES: [[&str; 3]; 7] = [
+    [TRIALS, "trials.parquet", "a trial"],
+    ["rounds.csv", "rounds.parquet", "a task's group in a round of a trial"],
+    ["robots.csv", "robots.parquet", "a robot in a trial"],
+    [
+        "groups.csv",
+        "groups.parquet",
+        "a robot when it was grouped, in a round of a trial, with its needs as they really were",
+    ],
+    ["series.csv", "series.parquet", "a moment of a trial, every ten seconds"],
+    ["hashes.csv", "hashes.parquet", "a link of a trial's hash chain"],
+    [
+        "links.csv",
+        "links.parquet",
+        "a link over the medium in a trial, from a robot to the base or to a group-mate",
+    ],
 ];
 
 /// The names of the tables that a sweep has for this `keep`. A shard has only the first; the others are
 /// made when the shards are merged.
-pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static str] {
+pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> impl ExactSizeIterator<Item = &'static str> {
     let count = match keep {
         Keep::Trials => 1,
         _ if shard.is_some() => 1,
@@ -39,19 +43,8 @@ pub(super) fn tables_of(keep: Keep, shard: Option<Shard>) -> &'static [&'static 
         Keep::Robots => 3,
         Keep::Groups => 7,
     };
-    &TABLES[..count]
+    TABLES.into_iter().take(count).map(|[csv, ..]| csv)
 }
-
-/// What a row is in each table, in the order of [`TABLES`].
-pub(super) const A_ROW_IS: [&str; TABLES.len()] = [
-    "a trial",
-    "a task's group in a round of a trial",
-    "a robot in a trial",
-    "a robot when it was grouped, in a round of a trial, with its needs as they really were",
-    "a moment of a trial, every ten seconds",
-    "a link of a trial's hash chain",
-    "a link over the medium in a trial, from a robot to the base or to a group-mate",
-];
 
 /// A table of a sweep's folder.
 pub struct Described {
@@ -67,21 +60,20 @@ pub struct Described {
 
 /// The tables that a sweep may have, from those that every sweep keeps to those that take the most room.
 pub fn described(experiment: &Experiment) -> [Described; TABLES.len()] {
-    let of = |place: usize, own: Vec<About>| Described {
-        csv: TABLES[place],
-        parquet: PARQUETS[place],
-        row_is: A_ROW_IS[place],
-        columns: rows::before(&experiment.axes).into_iter().chain(own).collect(),
-    };
-    [
-        of(0, abouts(rows::trials(&experiment.metrics))),
-        of(1, abouts(rows::rounds())),
-        of(2, abouts(rows::robots())),
-        of(3, abouts(rows::groups(&experiment.base.needs))),
-        of(4, abouts(rows::series(&experiment.metrics))),
-        of(5, abouts(rows::links())),
-        of(6, abouts(rows::radio())),
-    ]
+    let own = [
+        abouts(rows::trials(&experiment.metrics)),
+        abouts(rows::rounds()),
+        abouts(rows::robots()),
+        abouts(rows::groups(&experiment.base.needs)),
+        abouts(rows::series(&experiment.metrics)),
+        abouts(rows::links()),
+        abouts(rows::radio()),
+    ];
+    let mut own = own.into_iter();
+    TABLES.map(|[csv, parquet, row_is]| {
+        let columns = rows::before(&experiment.axes).into_iter().chain(own.next().into_iter().flatten());
+        Described { csv, parquet, row_is, columns: columns.collect() }
+    })
 }
 
 /// The cells before a table's own columns in the rows of a case: its number from 1 and the values of the
@@ -146,24 +138,29 @@ impl TableRows {
         let key = &finished.key;
         let before = before(experiment, key.case);
         let mut tables = self.0.iter_mut();
-        let Some(trials) = tables.next() else { return Ok(()) };
-        let row = std::iter::once(TrialRow::of(finished, experiment));
-        trials.add(&before, &rows::trials(&experiment.metrics), row)?;
+        let trial = std::iter::once(TrialRow::of(finished, experiment));
+        add(tables.next(), &before, &rows::trials(&experiment.metrics), trial)?;
         let Some(trial) = finished.trial() else { return Ok(()) };
-        let Some(rounds) = tables.next() else { return Ok(()) };
-        rounds.add(&before, &rows::rounds(), rows::round_rows(key, &trial.record))?;
-        let Some(robots) = tables.next() else { return Ok(()) };
-        robots.add(&before, &rows::robots(), rows::robot_rows(key, &trial.record))?;
-        let Some(groups) = tables.next() else { return Ok(()) };
-        let needs = &experiment.base.needs;
-        groups.add(&before, &rows::groups(needs), rows::group_rows(key, &trial.record))?;
-        let duration_s = experiment.cases[key.case].scenario.duration_s;
-        let Some(series) = tables.next() else { return Ok(()) };
-        let columns = rows::series(&experiment.metrics);
-        series.add(&before, &columns, rows::series_rows(key, trial, duration_s))?;
-        let Some(hashes) = tables.next() else { return Ok(()) };
-        hashes.add(&before, &rows::links(), rows::link_rows(key, &trial.record))?;
-        let Some(radio) = tables.next() else { return Ok(()) };
-        Ok(radio.add(&before, &rows::radio(), rows::radio_rows(key, &trial.record))?)
+        let (record, duration_s) = (&trial.record, experiment.cases[key.case].scenario.duration_s);
+        let rounds = record.rounds.iter().map(|round| (record, round));
+        add(tables.next(), &before, &rows::rounds(), rows::of(key, rounds))?;
+        add(tables.next(), &before, &rows::robots(), rows::of(key, &record.robots))?;
+        let groups = rows::groups(&experiment.base.needs);
+        add(tables.next(), &before, &groups, rows::of(key, rows::grouped(record)))?;
+        let series = rows::series(&experiment.metrics);
+        add(tables.next(), &before, &series, rows::of(key, rows::delivered(trial, duration_s)))?;
+        add(tables.next(), &before, &rows::links(), rows::of(key, record.chain.links()))?;
+        let heard = record.heard.iter().flat_map(|heard| &heard.links).filter(|link| link.sent > 0);
+        add(tables.next(), &before, &rows::radio(), rows::of(key, heard))
     }
+}
+
+/// Adds rows to a table, if the sweep has it.
+fn add<R>(
+    table: Option<&mut Csv<Vec<u8>>>,
+    before: &[String],
+    columns: &Columns<R>,
+    rows: impl Iterator<Item = R>,
+) -> Result<(), Failure> {
+    Ok(table.map_or(Ok(()), |table| table.add(before, columns, rows))?)
 }

@@ -60,7 +60,8 @@ fn trial_rows(folder: &mut Folder, place: Place) -> Result<Vec<[String; 4]>, Fai
     // Of the columns of a group, those of which a measure makes sense: not the times of its round's ends.
     let columns = rows::rounds().into_iter().filter(|column| !["", "s"].contains(&column.about.unit));
     let columns: Vec<_> = columns.collect();
-    for (round, row) in trial.record.rounds.iter().zip(rows::round_rows(&key, &trial.record)) {
+    let rounds = trial.record.rounds.iter().map(|round| (&trial.record, round));
+    for (round, row) in trial.record.rounds.iter().zip(rows::of(&key, rounds)) {
         let task = &trial.record.tasks[round.task.index()].task;
         let duration = round.end_s.map(|end| ("duration_s", end - round.start_s));
         let measured =

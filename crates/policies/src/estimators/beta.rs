@@ -4,58 +4,47 @@
 //! base and of the mates alike (Josang, Ismail 2002, *The Beta Reputation System*). Earlier rounds are
 //! forgotten once a round, so that the order within a round does not matter.
 
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::counts::Counts;
 use super::last_said::{last_said, last_said_with};
 use super::outcomes::{Outcome, Outcomes, TOLERANCE};
 
-/// Believes robots by their outcomes, whoever gave them; levels are those said last.
-#[derive(Debug, Clone, Copy)]
-pub struct Beta {
-    options: Options,
-}
-
-/// Options of `Beta`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// Weight of what was known a round ago, above 0 and at most 1.
-    pub forget: f64,
-    /// How far from what was said a speed may be until it counts as false, as a share of top speed, above 0.
-    pub tolerance: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { forget: 0.9, tolerance: TOLERANCE }
+teaming::options! {
+    /// Believes robots by their outcomes, whoever gave them; levels are those said last.
+    #[derive(Copy)]
+    pub struct Beta {
+        /// Weight of what was known a round ago, above 0 and at most 1.
+        pub forget: f64 = 0.9,
+        /// How far from what was said a speed may be until it counts as false, as a share of top speed,
+        /// above 0.
+        pub tolerance: f64 = TOLERANCE,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("Beta", "trust as a Beta reputation that forgets", Beta::new)
+    EstimatorKind::with_options("Beta", "trust as a Beta reputation that forgets", Beta::checked)
         .from_sources(env!("SOURCES_ESTIMATOR_BETA"))
 }
 
 impl Beta {
-    fn new(options: Options) -> Result<Self, &'static str> {
-        let Options { forget, tolerance } = options;
+    fn checked(self) -> Result<Self, &'static str> {
+        let Self { forget, tolerance } = self;
         if !(forget > 0.0 && forget <= 1.0) {
             return Err("forget must be above 0 and at most 1");
         }
         let is_share = tolerance.is_finite() && tolerance > 0.0;
-        if is_share { Ok(Self { options }) } else { Err("tolerance must be a number above 0") }
+        if is_share { Ok(self) } else { Err("tolerance must be a number above 0") }
     }
 }
 
 impl Estimator for Beta {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
-        let outcomes = Outcomes::of(question, evidence, self.options.tolerance);
-        let trust = |id: u32| reputation(outcomes.about(id), self.options.forget).mean();
+        let outcomes = Outcomes::of(question, evidence, self.tolerance);
+        let trust = |id: u32| reputation(outcomes.about(id), self.forget).mean();
         last_said_with(question, question.members.iter().map(|member| trust(member.id)))
     }
 }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use rne_core::nested::Part;
-use rne_core::{Estimate, Estimator, EstimatorKind, MadeEstimator, PolicyError, Question};
+use teaming::nested::Part;
+use teaming::{Estimate, Estimator, EstimatorKind, MadeEstimator, PolicyError, Question};
 
 /// The options: each is an estimator, with options of its own.
 const PARTS: [Part; 2] = [Part { name: "level", default: "Kalman" }, Part { name: "trust", default: "Brs" }];

@@ -6,45 +6,33 @@
 //! Out Unfair Ratings in Bayesian Reputation Systems*). `R` lies below the `q` quantile where the
 //! distribution is less likely than `q` to be below `R`, so that no quantile is computed.
 
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::counts::Counts;
 use super::incomplete_beta::below;
 use super::last_said::{last_said, last_said_with};
 use super::outcomes::{Outcomes, TOLERANCE, by_rater};
 
-/// Believes robots by the outcomes of the base and of the fair raters; levels are those said last.
-#[derive(Debug, Clone, Copy)]
-pub struct Brs {
-    options: Options,
-}
-
-/// Options of `Brs`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// How unlikely a rater must be to be dropped: a probability above 0 and below 0.5.
-    pub q: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { q: 0.01 }
+teaming::options! {
+    /// Believes robots by the outcomes of the base and of the fair raters; levels are those said last.
+    #[derive(Copy)]
+    pub struct Brs {
+        /// How unlikely a rater must be to be dropped: a probability above 0 and below 0.5.
+        pub q: f64 = 0.01,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("Brs", "trust as a Beta reputation without unfair raters", Brs::new)
+    EstimatorKind::with_options("Brs", "trust as a Beta reputation without unfair raters", Brs::checked)
         .from_sources(env!("SOURCES_ESTIMATOR_BRS"))
 }
 
 impl Brs {
-    fn new(options: Options) -> Result<Self, &'static str> {
-        let is_tail = options.q > 0.0 && options.q < 0.5;
-        if is_tail { Ok(Self { options }) } else { Err("q must be above 0 and below 0.5") }
+    fn checked(self) -> Result<Self, &'static str> {
+        let is_tail = self.q > 0.0 && self.q < 0.5;
+        if is_tail { Ok(self) } else { Err("q must be above 0 and below 0.5") }
     }
 }
 
@@ -54,7 +42,7 @@ impl Estimator for Brs {
         let outcomes = Outcomes::of(question, evidence, TOLERANCE);
         let trust = |id: u32| {
             let (own, mut raters) = by_rater(outcomes.about(id));
-            reputation(own, &mut raters, self.options.q)
+            reputation(own, &mut raters, self.q)
         };
         last_said_with(question, question.members.iter().map(|member| trust(member.id)))
     }

@@ -4,8 +4,7 @@
 //! said; trust `1 - min(1, S / h)` (Page 1954, *Continuous Inspection Schemes*). One `x` a round: the median
 //! of the mates' ratings.
 
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::last_said::{last_said, last_said_with};
 use super::speeds::ratios;
@@ -13,49 +12,38 @@ use super::speeds::ratios;
 /// Standard deviation of the speed seen in terms of the speed said, of a robot that says what is true.
 const SD: f64 = 0.15;
 
-/// Believes robots that are not slower than they say for long; levels are those said last.
-#[derive(Debug, Clone, Copy)]
-pub struct Cusum {
-    options: Options,
-}
-
-/// Options of `Cusum`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// Shortfall of a round that is let pass, in standard deviations, from 0.
-    pub k: f64,
-    /// Sum of shortfalls at which nothing is believed, in standard deviations, above 0.
-    pub h: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { k: 0.5, h: 4.0 }
+teaming::options! {
+    /// Believes robots that are not slower than they say for long; levels are those said last.
+    #[derive(Copy)]
+    pub struct Cusum {
+        /// Shortfall of a round that is let pass, in standard deviations, from 0.
+        pub k: f64 = 0.5,
+        /// Sum of shortfalls at which nothing is believed, in standard deviations, above 0.
+        pub h: f64 = 4.0,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("Cusum", "trust by the sum of shortfalls of speed", Cusum::new)
+    EstimatorKind::with_options("Cusum", "trust by the sum of shortfalls of speed", Cusum::checked)
         .from_sources(env!("SOURCES_ESTIMATOR_CUSUM"))
 }
 
 impl Cusum {
-    fn new(options: Options) -> Result<Self, &'static str> {
-        let Options { k, h } = options;
+    fn checked(self) -> Result<Self, &'static str> {
+        let Self { k, h } = self;
         if !(k.is_finite() && k >= 0.0) {
             return Err("k must be a number from 0");
         }
-        if h.is_finite() && h > 0.0 { Ok(Self { options }) } else { Err("h must be a number above 0") }
+        if h.is_finite() && h > 0.0 { Ok(self) } else { Err("h must be a number above 0") }
     }
 }
 
 impl Estimator for Cusum {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
-        let Options { k, h } = self.options;
+        let Self { k, h } = *self;
         let trust = |ratios: Vec<f64>| 1.0 - (sum(&ratios, k) / h).min(1.0);
         last_said_with(question, ratios(question, evidence).into_iter().map(trust))
     }

@@ -5,8 +5,8 @@
 //! group counts as rested if it last said that a level was below its threshold. The variance grows by 4
 //! square percent points a round.
 
-use rne_core::estimate::as_said;
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+use teaming::estimate::as_said;
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::filter::{Rules, follow};
 use super::rounds::rounds;

@@ -6,9 +6,8 @@
 //! Algorithm for Reputation Management in P2P Networks*). `p` is what the base itself found, by the same
 //! formula over its own outcomes, and the same for all robots while it found nothing.
 
-use rne_core::ids::place_of;
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::ids::place_of;
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::counts::Counts;
 use super::last_said::{last_said, last_said_with};
@@ -20,37 +19,26 @@ const STILL: f64 = 1e-12;
 /// Iterations at most. With `a` of 0.01 it takes about 2,750.
 const MOST_TURNS: u32 = 10_000;
 
-/// Believes robots by the principal eigenvector of their ratings; levels are those said last.
-#[derive(Debug, Clone, Copy)]
-pub struct EigenTrust {
-    options: Options,
-}
-
-/// Options of `EigenTrust`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// Weight of the base's own outcomes, above 0 and at most 1.
-    pub a: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { a: 0.15 }
+teaming::options! {
+    /// Believes robots by the principal eigenvector of their ratings; levels are those said last.
+    #[derive(Copy)]
+    pub struct EigenTrust {
+        /// Weight of the base's own outcomes, above 0 and at most 1.
+        pub a: f64 = 0.15,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("EigenTrust", "trust by those who are trusted", EigenTrust::new)
+    EstimatorKind::with_options("EigenTrust", "trust by those who are trusted", EigenTrust::checked)
         .from_sources(env!("SOURCES_ESTIMATOR_EIGEN_TRUST"))
 }
 
 impl EigenTrust {
-    fn new(options: Options) -> Result<Self, &'static str> {
-        let is_weight = options.a > 0.0 && options.a <= 1.0;
-        if is_weight { Ok(Self { options }) } else { Err("a must be above 0 and at most 1") }
+    fn checked(self) -> Result<Self, &'static str> {
+        let is_weight = self.a > 0.0 && self.a <= 1.0;
+        if is_weight { Ok(self) } else { Err("a must be above 0 and at most 1") }
     }
 }
 
@@ -69,7 +57,7 @@ impl Estimator for EigenTrust {
                 |(by, counts): (u32, Counts)| Some(Link { by: place(by)?, of, value: satisfaction(counts) });
             local.extend(raters.into_iter().filter_map(link));
         }
-        let trust = eigenvector(&positive(local, robots.len()), &pre_trusted(base), self.options.a);
+        let trust = eigenvector(&positive(local, robots.len()), &pre_trusted(base), self.a);
         let most = trust.iter().copied().fold(0.0, f64::max);
         let of = |id: u32| place(id).map_or(1.0, |place| (trust[place] / most).clamp(0.0, 1.0));
         last_said_with(question, question.members.iter().map(|member| of(member.id)))

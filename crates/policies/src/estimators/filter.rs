@@ -1,7 +1,7 @@
 //! The Kalman filter of one member: what the base expects of its levels by what its group-mates spent, and
 //! what of its reports that lets through.
 
-use rne_core::{Evidence, Expected};
+use teaming::{Evidence, Expected};
 
 use super::counts::Counts;
 use super::rounds::Seen;
@@ -81,7 +81,7 @@ fn predict(guesses: &mut [Guess; 2], seen: &Seen, q: f64, rest_fills_one: bool) 
 
 #[cfg(test)]
 mod tests {
-    use rne_core::Evidence;
+    use teaming::Evidence;
 
     use super::super::rounds::Said;
     use super::*;

@@ -6,7 +6,7 @@
 //! of a healthy and `f1 = N(0.5, 0.25)` of a faulty robot at `x`, the speed that was seen in terms of the
 //! speed that was said. One `x` a round: the median of the mates' ratings. Trust is `1 - b`.
 
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::last_said::{last_said, last_said_with};
 use super::speeds::ratios;

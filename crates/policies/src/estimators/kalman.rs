@@ -8,50 +8,38 @@
 //! chi-square distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with
 //! Applications to Tracking and Navigation*, 5.4).
 
-use rne_core::estimate::as_said;
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::estimate::as_said;
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::filter::{Rules, follow};
 use super::rounds::rounds;
 
-/// Filters the levels of each robot; believes those whose reports pass.
-#[derive(Debug, Clone, Copy)]
-pub struct Kalman {
-    options: Options,
-}
-
-/// Options of `Kalman`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// Variance by which a level becomes less sure in each round, in square percent points.
-    pub q: f64,
-    /// Variance of a report, in square percent points.
-    pub r: f64,
-    /// Greatest squared error of a report in terms of its variance; a report beyond it fails.
-    pub gate: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { q: 4.0, r: 25.0, gate: 6.6349 }
+teaming::options! {
+    /// Filters the levels of each robot; believes those whose reports pass.
+    #[derive(Copy)]
+    pub struct Kalman {
+        /// Variance by which a level becomes less sure in each round, in square percent points.
+        pub q: f64 = 4.0,
+        /// Variance of a report, in square percent points.
+        pub r: f64 = 25.0,
+        /// Greatest squared error of a report in terms of its variance; a report beyond it fails.
+        pub gate: f64 = 6.6349,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("Kalman", "levels filtered by what group-mates spent", Kalman::new)
+    EstimatorKind::with_options("Kalman", "levels filtered by what group-mates spent", Kalman::checked)
         .from_sources(env!("SOURCES_ESTIMATOR_KALMAN"))
 }
 
 impl Kalman {
-    fn new(options: Options) -> Result<Self, String> {
-        let Options { q, r, gate } = options;
+    fn checked(self) -> Result<Self, String> {
+        let Self { q, r, gate } = self;
         match [("q", q), ("r", r), ("gate", gate)].into_iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
             Some((name, _)) => Err(format!("{name} must be a number above 0")),
-            None => Ok(Self { options }),
+            None => Ok(self),
         }
     }
 }
@@ -59,7 +47,7 @@ impl Kalman {
 impl Estimator for Kalman {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return as_said(question) };
-        let Options { q, r, gate } = self.options;
+        let Self { q, r, gate } = *self;
         let rules = Rules { q, r, gate };
         let of = |(member, seen): (_, Vec<_>)| {
             let (guesses, passes) = follow(evidence, &seen, &rules, true);

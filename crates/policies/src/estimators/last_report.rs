@@ -1,6 +1,6 @@
 //! `LastReport`: everybody is as they said last. It is what a policy without an estimator goes by.
 
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::last_said::last_said;
 

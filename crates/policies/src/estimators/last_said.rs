@@ -1,8 +1,8 @@
 //! The members as they were said last: the levels of every estimator that judges trust alone.
 
-use rne_core::estimate::as_said;
-use rne_core::ids::place_of;
-use rne_core::{Estimate, Evidence, PolicyError, Question};
+use teaming::estimate::as_said;
+use teaming::ids::place_of;
+use teaming::{Estimate, Evidence, PolicyError, Question};
 
 /// The members as they were said last, with the standard deviations of their gauges, believed. A robot that
 /// was never heard has the deviations that the base expects.

@@ -27,7 +27,7 @@ pub mod travos;
 pub mod truth;
 pub mod wmsr;
 
-use rne_core::EstimatorKind;
+use teaming::EstimatorKind;
 
 /// All of them, the controls first.
 pub(super) fn kinds() -> [EstimatorKind; 14] {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rne_core::{Evidence, Question, Rating, SaidRounds};
+use teaming::{Evidence, Question, Rating, SaidRounds};
 
 use super::counts::Counts;
 

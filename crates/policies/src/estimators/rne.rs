@@ -12,47 +12,35 @@
 //!
 //! A level that nobody measured counts as said. `T` is the mean over the rounds in which one was measured.
 
-use rne_core::evidence::DOUBTED_POINTS;
-use rne_core::{
-    Body, Estimate, Estimator, EstimatorKind, Evidence, Member, NeedDistribution, NeedVector, NeedWeights,
-    PolicyError, Question, SaidRounds, Used, relative_entropy,
+use rne_core::{NeedDistribution, NeedVector, NeedWeights, relative_entropy};
+use teaming::evidence::DOUBTED_POINTS;
+use teaming::{
+    Body, Estimate, Estimator, EstimatorKind, Evidence, Member, PolicyError, Question, SaidRounds, Used,
 };
-use serde::{Deserialize, Serialize};
 
 use super::last_said::{last_said, last_said_with, member_of};
 use super::medians::by_round;
 
-/// Believes robots whose needs are as they said; levels are those said last.
-#[derive(Debug, Clone, Copy)]
-pub struct Rne {
-    options: Options,
-}
-
-/// Options of `Rne`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// The relative needs entropy at which trust has fallen to 1 / e, in nats, above 0.
-    pub t0: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { t0: 0.005 }
+teaming::options! {
+    /// Believes robots whose needs are as they said; levels are those said last.
+    #[derive(Copy)]
+    pub struct Rne {
+        /// The relative needs entropy at which trust has fallen to 1 / e, in nats, above 0.
+        pub t0: f64 = 0.005,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("Rne", "trust by Relative Needs Entropy of said and measured", Rne::new)
+    EstimatorKind::with_options("Rne", "trust by Relative Needs Entropy of said and measured", Rne::checked)
         .from_sources(env!("SOURCES_ESTIMATOR_RNE"))
 }
 
 impl Rne {
-    fn new(options: Options) -> Result<Self, &'static str> {
-        let is_scale = options.t0.is_finite() && options.t0 > 0.0;
-        if is_scale { Ok(Self { options }) } else { Err("t0 must be a number above 0") }
+    fn checked(self) -> Result<Self, &'static str> {
+        let is_scale = self.t0.is_finite() && self.t0 > 0.0;
+        if is_scale { Ok(self) } else { Err("t0 must be a number above 0") }
     }
 }
 
@@ -70,7 +58,7 @@ impl Estimator for Rne {
         }
         let trust = |(sum, count): (f64, u32)| {
             let mean = if count == 0 { 0.0 } else { sum / f64::from(count) };
-            libm::exp(-mean / self.options.t0)
+            libm::exp(-mean / self.t0)
         };
         last_said_with(question, sums.into_iter().map(trust))
     }
@@ -159,7 +147,7 @@ fn measured_hp(question: &Question, evidence: &Evidence) -> Vec<Vec<(u32, f64)>>
 
 #[cfg(test)]
 mod tests {
-    use rne_core::{Level, LevelNeed, NeedId, RoleId};
+    use teaming::{Level, LevelNeed, NeedId, RoleId};
 
     use super::*;
 

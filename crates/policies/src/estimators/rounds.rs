@@ -1,8 +1,8 @@
 //! What the base heard of each member, question by question: one report a round, and what its group-mates
 //! said that the round before cost them.
 
-use rne_core::said::is_after;
-use rne_core::{Evidence, Question, SaidRounds};
+use teaming::said::is_after;
+use teaming::{Evidence, Question, SaidRounds};
 
 use super::last_said::member_of;
 

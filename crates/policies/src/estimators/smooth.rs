@@ -4,44 +4,32 @@
 //! *Statistical Forecasting for Inventory Control*). The variance of independent reports goes along: `v <-
 //! alpha^2 v_r + (1 - alpha)^2 v`.
 
-use rne_core::estimate::as_said;
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::estimate::as_said;
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::rounds::{Said, Seen, rounds};
 
-/// Smooths the levels that each robot said; believes everybody. A robot that was never heard stays as the
-/// question has it. A smoothed level lags behind one that falls.
-#[derive(Debug, Clone, Copy)]
-pub struct Smooth {
-    options: Options,
-}
-
-/// Options of `Smooth`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// Weight of the last report, above 0 and at most 1.
-    pub alpha: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { alpha: 0.4 }
+teaming::options! {
+    /// Smooths the levels that each robot said; believes everybody. A robot that was never heard stays as the
+    /// question has it. A smoothed level lags behind one that falls.
+    #[derive(Copy)]
+    pub struct Smooth {
+        /// Weight of the last report, above 0 and at most 1.
+        pub alpha: f64 = 0.4,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("Smooth", "reports of levels, smoothed exponentially", Smooth::new)
+    EstimatorKind::with_options("Smooth", "reports of levels, smoothed exponentially", Smooth::checked)
         .from_sources(env!("SOURCES_ESTIMATOR_SMOOTH"))
 }
 
 impl Smooth {
-    fn new(options: Options) -> Result<Self, &'static str> {
-        let is_weight = options.alpha > 0.0 && options.alpha <= 1.0;
-        if is_weight { Ok(Self { options }) } else { Err("alpha must be above 0 and at most 1") }
+    fn checked(self) -> Result<Self, &'static str> {
+        let is_weight = self.alpha > 0.0 && self.alpha <= 1.0;
+        if is_weight { Ok(self) } else { Err("alpha must be above 0 and at most 1") }
     }
 }
 
@@ -51,7 +39,7 @@ impl Estimator for Smooth {
         let Some(evidence) = &question.evidence else { return Ok(estimates) };
         let all = estimates.iter_mut().zip(&question.members).zip(rounds(question, evidence));
         for ((estimate, member), seen) in all {
-            if let Some(Said { levels, sd }) = smoothed(&seen, self.options.alpha) {
+            if let Some(Said { levels, sd }) = smoothed(&seen, self.alpha) {
                 *estimate = Estimate::of_levels(member, evidence, levels, sd)?;
             }
         }

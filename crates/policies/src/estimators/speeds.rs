@@ -1,6 +1,6 @@
 //! How fast a robot was seen to go, in terms of what it had said: one number a round.
 
-use rne_core::{Evidence, Question, Rating};
+use teaming::{Evidence, Question, Rating};
 
 use super::last_said::member_of;
 use super::medians::by_round;

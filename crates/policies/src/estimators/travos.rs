@@ -9,9 +9,8 @@
 //! Patel, Jennings, Luck 2006, *TRAVOS: Trust and Reputation in the Context of Inaccurate Information
 //! Sources*). An opinion is what the rater said in the rounds before.
 
-use rne_core::ids::place_of;
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::ids::place_of;
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::counts::Counts;
 use super::incomplete_beta::within;
@@ -21,43 +20,36 @@ use super::outcomes::{Outcome, Outcomes, TOLERANCE, by_rater};
 /// Number of bins of opinions.
 const BINS: usize = 5;
 
-/// Believes robots by the base's own outcomes, and by raters as far as they were right; levels are those said
-/// last.
-#[derive(Debug, Clone, Copy)]
-pub struct Travos {
-    options: Options,
-}
-
-/// Options of `Travos`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// How far the trust may be from its mean, above 0 and below 1.
-    pub error: f64,
-    /// How likely that must be for others not to be asked, above 0 and below 1.
-    pub confidence: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { error: 0.2, confidence: 0.95 }
+teaming::options! {
+    /// Believes robots by the base's own outcomes, and by raters as far as they were right; levels are those
+    /// said last.
+    #[derive(Copy)]
+    pub struct Travos {
+        /// How far the trust may be from its mean, above 0 and below 1.
+        pub error: f64 = 0.2,
+        /// How likely that must be for others not to be asked, above 0 and below 1.
+        pub confidence: f64 = 0.95,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    EstimatorKind::with_options("Travos", "trust by own outcomes, or by raters that were right", Travos::new)
-        .from_sources(env!("SOURCES_ESTIMATOR_TRAVOS"))
+    EstimatorKind::with_options(
+        "Travos",
+        "trust by own outcomes, or by raters that were right",
+        Travos::checked,
+    )
+    .from_sources(env!("SOURCES_ESTIMATOR_TRAVOS"))
 }
 
 impl Travos {
-    fn new(options: Options) -> Result<Self, String> {
+    fn checked(self) -> Result<Self, String> {
         let is_share = |share: f64| share > 0.0 && share < 1.0;
-        let shares = [("error", options.error), ("confidence", options.confidence)];
+        let shares = [("error", self.error), ("confidence", self.confidence)];
         match shares.into_iter().find(|(_, share)| !is_share(*share)) {
             Some((name, _)) => Err(format!("{name} must be above 0 and below 1")),
-            None => Ok(Self { options }),
+            None => Ok(self),
         }
     }
 }
@@ -69,7 +61,7 @@ impl Estimator for Travos {
         let accuracies = Accuracies::of(&outcomes).judged();
         let trust = |id: u32| {
             let (own, raters) = by_rater(outcomes.about(id));
-            if confidence(own, self.options.error) > self.options.confidence {
+            if confidence(own, self.error) > self.confidence {
                 return own.mean();
             }
             let opinions = raters.iter().map(|(rater, said)| adjusted(*said, accuracies.rho(*rater, *said)));

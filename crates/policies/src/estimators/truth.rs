@@ -1,7 +1,7 @@
 //! `Truth`: every level as it is. A control: what a perfect estimator would be worth.
 
-use rne_core::estimate::as_said;
-use rne_core::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+use teaming::estimate::as_said;
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 /// Takes the true levels of the evidence, with the needs that follow from them; believes everybody. It is no
 /// estimator that a team could have.

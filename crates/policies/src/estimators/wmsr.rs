@@ -8,35 +8,23 @@
 //! withstands `f` liars among at least `2 f + 1` raters. Values of the last round in which the robot was
 //! rated count.
 
-use rne_core::{Estimate, Estimator, EstimatorKind, Evidence, PolicyError, Question};
-use serde::{Deserialize, Serialize};
+use teaming::{Estimate, Estimator, EstimatorKind, Evidence, PolicyError, Question};
 
 use super::last_said::{last_said, member_of};
 
-/// Takes the health that mates saw, and the energy that was said last; believes everybody.
-#[derive(Debug, Clone, Copy)]
-pub struct Wmsr {
-    options: Options,
-}
-
-/// Options of `Wmsr`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// Number of liars to withstand: values that are dropped on each side.
-    pub f: u32,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { f: 1 }
+teaming::options! {
+    /// Takes the health that mates saw, and the energy that was said last; believes everybody.
+    #[derive(Copy, Eq)]
+    pub struct Wmsr {
+        /// Number of liars to withstand: values that are dropped on each side.
+        pub f: u32 = 1,
     }
 }
 
 /// The registry's line.
 #[must_use]
 pub fn kind() -> EstimatorKind {
-    let make = |options: Options| Ok::<_, &'static str>(Wmsr { options });
+    let make = |options: Wmsr| Ok::<_, &'static str>(options);
     EstimatorKind::with_options("Wmsr", "health as mates see it, without the values farthest out", make)
         .from_sources(env!("SOURCES_ESTIMATOR_WMSR"))
 }
@@ -49,7 +37,7 @@ impl Estimator for Wmsr {
         let all = question.members.iter().zip(measured(question, evidence)).zip(was_heard);
         for (estimate, ((member, values), was_heard)) in estimates.iter_mut().zip(all) {
             let own = Some(estimate.levels[1]).filter(|_| was_heard);
-            let kept = kept(own, values, self.options.f as usize);
+            let kept = kept(own, values, self.f as usize);
             let Some(mean) = mean(&kept) else { continue };
             let sd = (kept.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>()
                 / kept.len() as f64)
@@ -61,7 +49,7 @@ impl Estimator for Wmsr {
     }
 
     fn least_raters(&self) -> Option<u32> {
-        Some(self.options.f.saturating_mul(2).saturating_add(1))
+        Some(self.f.saturating_mul(2).saturating_add(1))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The game of one role: robots and tasks by number.
 
-use rne_core::decision::Protocol;
+use teaming::decision::Protocol;
 
 /// A robot moves if it gains more than this.
 const GAIN: f64 = 1e-12;

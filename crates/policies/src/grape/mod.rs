@@ -8,8 +8,8 @@
 //! question suggests. Where sizes are not free, only tasks with an open slot can be moved to: the game ends
 //! when all slots are taken, and what comes out depends on the order of the ids.
 //!
-//! A move is one round in which the robot tells all others of its role the partition. Time: n m for each move,
-//! for n members of a role and m tasks.
+//! A move is one round in which the robot tells all others of its role the partition. Time: n m for each
+//! move, for n members of a role and m tasks.
 //!
 //! Example, with `distance: 0` and free sizes: two equal robots, two tasks of worth 1 and 0.5. The first
 //! robot takes the worthier task. There, the second one would get log2(3) / 2 = 0.79, which is more than 0.5
@@ -17,12 +17,12 @@
 
 mod game;
 
-use rne_core::decision::{Account, Decision, Protocol};
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::{GroupSizes, Question};
-use rne_core::registry::PolicyKind;
 use serde::{Deserialize, Serialize};
+use teaming::decision::{Account, Decision, Protocol};
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::{GroupSizes, Question};
+use teaming::registry::PolicyKind;
 
 use crate::assigning::of_role;
 use crate::utility::{Parts, Utility, UtilityOptions};
@@ -43,22 +43,16 @@ pub enum Reward {
     Constant,
 }
 
-/// Options of `GRAPE`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// How the reward of a task grows with its members.
-    pub reward: Reward,
-    /// How much strength at worthy tasks counts, from 0 to 100.
-    pub quality: f64,
-    /// How much the way to the task counts, from 0 to 100.
-    pub distance: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        let UtilityOptions { quality, distance } = UtilityOptions::default();
-        Self { reward: Reward::default(), quality, distance }
+teaming::options! {
+    /// Options of `GRAPE`.
+    #[derive(Copy)]
+    pub struct Options {
+        /// How the reward of a task grows with its members.
+        pub reward: Reward = Reward::default(),
+        /// How much strength at worthy tasks counts, from 0 to 100.
+        pub quality: f64 = 1.0,
+        /// How much the way to the task counts, from 0 to 100.
+        pub distance: f64 = 1.0,
     }
 }
 

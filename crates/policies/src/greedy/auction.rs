@@ -1,6 +1,6 @@
 //! Greedy by the base, and as an auction of one robot after the other.
 
-use rne_core::decision::Protocol;
+use teaming::decision::Protocol;
 
 use super::graph::Graph;
 use super::market::{Bid, Market};

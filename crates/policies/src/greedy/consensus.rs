@@ -6,7 +6,7 @@
 //! learns of a better bid for its slot is free again. Bids of a slot only rise, so that no time stamps are
 //! needed. The round in which nothing changes is the last one.
 
-use rne_core::decision::Protocol;
+use teaming::decision::Protocol;
 
 use super::graph::Graph;
 use super::market::{Bid, Market};

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use rne_core::ids::TaskId;
+use teaming::ids::TaskId;
 
 /// Robots and tasks by number: robots by id, tasks from the hardest to the easiest.
 pub(super) struct Market {

@@ -20,12 +20,12 @@ mod market;
 
 pub use graph::Graph;
 
-use rne_core::decision::{Account, Decision, Protocol as Sent};
-use rne_core::error::PolicyError;
-use rne_core::policy::Policy;
-use rne_core::question::Question;
-use rne_core::registry::PolicyKind;
 use serde::{Deserialize, Serialize};
+use teaming::decision::{Account, Decision, Protocol as Sent};
+use teaming::error::PolicyError;
+use teaming::policy::Policy;
+use teaming::question::Question;
+use teaming::registry::PolicyKind;
 
 use crate::assigning::of_role;
 use crate::utility::{Utility, UtilityOptions};
@@ -45,24 +45,18 @@ pub enum Protocol {
     Cbba,
 }
 
-/// Options of `GREEDY`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Options {
-    /// Who finds the largest utility.
-    pub protocol: Protocol,
-    /// Which robots of a role hear one another.
-    pub graph: Graph,
-    /// How much strength at worthy tasks counts, from 0 to 100.
-    pub quality: f64,
-    /// How much the way to the task counts, from 0 to 100.
-    pub distance: f64,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        let UtilityOptions { quality, distance } = UtilityOptions::default();
-        Self { protocol: Protocol::default(), graph: Graph::default(), quality, distance }
+teaming::options! {
+    /// Options of `GREEDY`.
+    #[derive(Copy)]
+    pub struct Options {
+        /// Who finds the largest utility.
+        pub protocol: Protocol = Protocol::default(),
+        /// Which robots of a role hear one another.
+        pub graph: Graph = Graph::default(),
+        /// How much strength at worthy tasks counts, from 0 to 100.
+        pub quality: f64 = 1.0,
+        /// How much the way to the task counts, from 0 to 100.
+        pub distance: f64 = 1.0,
     }
 }
 

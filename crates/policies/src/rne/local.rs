@@ -1,10 +1,9 @@
 //! Partitions of roles that are too large for the exact search: a deterministic local search.
 //!
 //! The search starts from the best partition by rank in one need's share, then swaps pairs of robots as long
-//! as a swap improves the score. The result is not proven optimal; [`super::bound`] limits its distance from
-//! the optimum. In large teams, [`super::gain`] tells of most swaps that they lose.
+//! as a swap improves the score. The result is not proven optimal. In large teams, [`super::gain`] tells of
+//! most swaps that they lose.
 
-use super::bound::{Choice, upper_bound};
 use super::gain::{Gains, Spread};
 use super::parts::{Partition, distinct_orders, in_order};
 use super::scorer::{Scorer, TIE_TOLERANCE, add_pair, part_sums};
@@ -74,7 +73,6 @@ pub(super) fn search(rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) ->
 
 fn search_with(spread: Spread, rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) -> Partition {
     let best = best_ranked_start(rows, sizes, scorer);
-    let bound = upper_bound(&[Choice::new(rows.iter().map(Vec::as_slice), sizes)], sizes.len(), scorer);
     let mut search = LocalSearch { rows, spread, gains: None, scorer, best, searched: 0 };
     search.weigh_gains();
     while search.searched < MAX_SWAPS && search.improve() {}
@@ -83,7 +81,6 @@ fn search_with(spread: Spread, rows: &[Vec<f64>], sizes: &[usize], scorer: &mut 
         runner_up: None,
         searched: search.searched,
         proven_optimal: false,
-        upper_bound: Some(bound),
     }
 }
 

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use super::scorer::{Scorer, add};
 use super::{NAME, Rne, as_score, weighted_needs};
-use rne_core::decision::Assignment;
 use rne_core::divergence::{relative_entropy, relative_entropy_by_need};
-use rne_core::error::PolicyError;
-use rne_core::measure::{NeedPart, TeamTrust, TrustMeasure};
 use rne_core::needs::{NeedDistribution, NeedVector, NeedWeights};
-use rne_core::question::Question;
-use rne_core::registry::MeasureKind;
 use rne_core::trust::RelativeNeedsEntropy;
+use teaming::decision::Assignment;
+use teaming::error::PolicyError;
+use teaming::measure::{NeedPart, TeamTrust, TrustMeasure};
+use teaming::question::Question;
+use teaming::registry::MeasureKind;
 
 /// The registry's line for the trust measure. It has the name and the options of the policy that groups by
 /// it.
@@ -94,7 +94,7 @@ impl Rne {
     /// `None` where fewer than two groups have members.
     ///
     /// # Errors
-    /// Those of [`rne_core::Policy::decide`].
+    /// Those of [`teaming::Policy::decide`].
     pub fn score(
         &self,
         question: &Question,

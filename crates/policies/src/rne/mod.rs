@@ -6,7 +6,6 @@
 //! the merged groups. The score of more than two groups is the sum over their pairs. The [`HardRule`] decides
 //! which group takes which task.
 
-mod bound;
 mod gain;
 mod group;
 mod local;
@@ -24,23 +23,23 @@ pub use merge::EXACT_TASKS;
 pub use options::{HardRule, MergeReading, RneOptions, ScoreDirection};
 pub use partition::EXACT_PARTITIONS;
 
-use bound::{Choice, gap_percent, upper_bound};
 use group::Group;
 use merge::{Merge, Merger};
 use partition::best_partition;
 use quotas::Sizes;
-use rne_core::decision::{
+use rne_core::NeedsError;
+use rne_core::needs::{NeedWeights, check_length};
+use rne_core::trust::RelativeNeedsEntropy;
+use scorer::{Scorer, part_sums};
+use teaming::decision::{
     Account, Alternative, Assignment, Decision, MatchingCandidate, RneAccount, RoleMerge, RoleSplit,
     SplitCandidate, Suitability,
 };
-use rne_core::error::{NeedsError, PolicyError};
-use rne_core::ids::RoleId;
-use rne_core::needs::{NeedWeights, check_length};
-use rne_core::policy::Policy;
-use rne_core::question::{Member, Question, SCHEMA_VERSION};
-use rne_core::registry::PolicyKind;
-use rne_core::trust::RelativeNeedsEntropy;
-use scorer::{Scorer, part_sums};
+use teaming::error::PolicyError;
+use teaming::ids::RoleId;
+use teaming::policy::Policy;
+use teaming::question::{Member, Question};
+use teaming::registry::PolicyKind;
 
 const NAME: &str = "RNE";
 
@@ -185,7 +184,6 @@ impl Search<'_> {
             runner_up: split.runner_up.map(candidate),
             searched: split.searched,
             proven_optimal: split.proven_optimal,
-            upper_bound: split.upper_bound.map(RelativeNeedsEntropy::from_nats),
         });
         groups
     }
@@ -221,19 +219,6 @@ impl Search<'_> {
         as_score(self.scorer.total(&sums, 0))
     }
 
-    /// No grouping that the quotas allow has a larger score than this.
-    fn upper_bound(&self) -> RelativeNeedsEntropy {
-        let choice = |role: RoleId| {
-            let of_role = self.question.members.iter().zip(&self.rows).filter(|(m, _)| m.role == role);
-            let rows = of_role.map(|(_, row)| row.as_slice());
-            Choice::new(rows, &self.question.quotas[role.index()].members)
-        };
-        let with_members = |role: &RoleId| self.question.of_role(*role).next().is_some();
-        let roles: Vec<Choice> = self.question.role_ids().filter(with_members).map(choice).collect();
-        let nats = upper_bound(&roles, self.question.tasks.len(), &self.scorer);
-        RelativeNeedsEntropy::from_nats(nats)
-    }
-
     /// Assigns the groups to tasks by the hard rule. Also returns the suitability of each group.
     fn placed(&mut self, groups: &[Group]) -> Result<(Assignment, Vec<Suitability>), PolicyError> {
         let values = self.rne.suitabilities(self.question, groups, &self.rows, &mut self.scorer)?;
@@ -257,18 +242,12 @@ impl Search<'_> {
             alternatives.push(Alternative { assignment, score: self.total(groups) });
         }
         self.account.suitability = suitability;
-        let upper_bound = if self.proven_optimal { score } else { score.map(|_| self.upper_bound()) };
-        Ok(Decision {
-            believed: None,
-            schema_version: SCHEMA_VERSION,
-            assignment,
-            score,
-            proven_optimal: self.proven_optimal,
-            upper_bound,
-            gap_percent: score.zip(upper_bound).map(|(score, bound)| gap_percent(score, bound)),
-            alternatives,
-            account: Account::Rne(self.account),
-        })
+        let mut decision = Decision::of(assignment);
+        decision.score = score;
+        decision.proven_optimal = self.proven_optimal;
+        decision.alternatives = alternatives;
+        decision.account = Account::Rne(self.account);
+        Ok(decision)
     }
 }
 

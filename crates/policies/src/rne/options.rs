@@ -46,37 +46,23 @@ pub enum HardRule {
     MeanHp,
 }
 
-/// Options of the RNE policy. `docs/readings.md` tells why each default is what it is.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RneOptions {
-    /// Base of the logarithm in which scores are printed.
-    pub log_base: LogBase,
-    /// Whether distributions are sorted before they are compared: Algorithm 4's last line to the letter,
-    /// which compares needs of different kinds.
-    pub sort: bool,
-    /// Which RNE between two groups is maximised.
-    pub score: ScoreDirection,
-    /// Weight of each need; `None` means those of the question.
-    pub weights: Option<Vec<f64>>,
-    /// Whether each need is divided by its maximum over the team first, so that no unit dominates.
-    pub scale: bool,
-    /// Which RNE decides how parts are merged.
-    pub merge: MergeReading,
-    /// Which group takes which task.
-    pub hard_rule: HardRule,
-}
-
-impl Default for RneOptions {
-    fn default() -> Self {
-        Self {
-            log_base: LogBase::E,
-            sort: false,
-            score: ScoreDirection::MaxOfBoth,
-            weights: None,
-            scale: true,
-            merge: MergeReading::Apart,
-            hard_rule: HardRule::IntraGroupTrust,
-        }
+teaming::options! {
+    /// Options of the RNE policy. `studies/yang2021/docs/readings.md` tells why each default is what it is.
+    pub struct RneOptions {
+        /// Base of the logarithm in which scores are printed.
+        pub log_base: LogBase = LogBase::E,
+        /// Whether distributions are sorted before they are compared: Algorithm 4's last line to the letter,
+        /// which compares needs of different kinds.
+        pub sort: bool = false,
+        /// Which RNE between two groups is maximised.
+        pub score: ScoreDirection = ScoreDirection::MaxOfBoth,
+        /// Weight of each need; `None` means those of the question.
+        pub weights: Option<Vec<f64>> = None,
+        /// Whether each need is divided by its maximum over the team first, so that no unit dominates.
+        pub scale: bool = true,
+        /// Which RNE decides how parts are merged.
+        pub merge: MergeReading = MergeReading::Apart,
+        /// Which group takes which task.
+        pub hard_rule: HardRule = HardRule::IntraGroupTrust,
     }
 }

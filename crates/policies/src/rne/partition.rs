@@ -37,7 +37,6 @@ fn only_partition(robots: usize, parts: usize) -> Partition {
         runner_up: None,
         searched: 1,
         proven_optimal: true,
-        upper_bound: None,
     }
 }
 
@@ -96,7 +95,6 @@ fn exact(rows: &[Vec<f64>], sizes: &[usize], scorer: &mut Scorer) -> Partition {
         runner_up: search.second.map(|(part_of, score)| (in_order(&part_of, sizes.len()), score)),
         searched: search.searched,
         proven_optimal: true,
-        upper_bound: None,
     }
 }
 

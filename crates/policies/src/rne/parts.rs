@@ -10,7 +10,6 @@ pub(super) struct Partition {
     pub(super) runner_up: Option<(Vec<Vec<usize>>, f64)>,
     pub(super) searched: u64,
     pub(super) proven_optimal: bool,
-    pub(super) upper_bound: Option<f64>,
 }
 
 /// All distinct orders of these sizes, in lexicographic order. The sizes must be in ascending order.

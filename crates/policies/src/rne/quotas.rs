@@ -2,8 +2,8 @@
 //! order.
 
 use super::group::Group;
-use rne_core::ids::{RoleId, TaskId};
-use rne_core::question::Question;
+use teaming::ids::{RoleId, TaskId};
+use teaming::question::Question;
 
 /// The sizes that the groups must have, role by role, if quotas bind.
 pub(super) struct Sizes {

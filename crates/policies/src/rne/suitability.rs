@@ -6,10 +6,10 @@ use super::quotas::Sizes;
 use super::scorer::{Scorer, TIE_TOLERANCE};
 use super::{Rne, scale_by_maximum};
 use crate::facts::missing;
-use rne_core::decision::Suitability;
-use rne_core::error::PolicyError;
-use rne_core::ids::TaskId;
-use rne_core::question::{Member, Question};
+use teaming::decision::Suitability;
+use teaming::error::PolicyError;
+use teaming::ids::TaskId;
+use teaming::question::{Member, Question};
 
 impl Rne {
     /// How well each group is suited for a hard task: higher is better, `None` for an empty group.

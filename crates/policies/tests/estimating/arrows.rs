@@ -1,6 +1,6 @@
 //! Policies behind estimators: `RULE <- ESTIMATOR | USE`.
 
-use rne_core::{Decision, GroupSizes, MadePolicy, PolicyError, Question, Quota, RoleId, TaskId};
+use teaming::{Decision, GroupSizes, MadePolicy, PolicyError, Question, Quota, RoleId, TaskId};
 
 use crate::support::{BRAGGER, CHEAT, question};
 
@@ -43,7 +43,7 @@ fn a_liar_is_sent_where_it_belongs() {
 /// The trust of the bragger by `Cusum` is 0, so that it counts as the mean of the trusted of its role.
 #[test]
 fn a_discounted_robot_counts_as_the_mean_of_the_trusted() {
-    use rne_core::{Account, TrustUse};
+    use teaming::{Account, TrustUse};
     let question = question();
     let estimates = policies::standard().estimator("Cusum").unwrap().it.estimate(&question).unwrap();
     assert!(estimates[BRAGGER as usize].trust == 0.0);

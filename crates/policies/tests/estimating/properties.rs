@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
-use rne_core::{Estimate, Evidence, Question};
+use teaming::{Estimate, Evidence, Question};
 
 use crate::support::{BRAGGER, CHEAT, ROUND, estimates, names, question, said_levels};
 
@@ -137,7 +137,7 @@ fn a_robot_that_rests_at_home_is_expected_to_be_full() {
         .iter_mut()
         .for_each(|group| group.members.retain(|m| m.id != 0));
     evidence(&mut question).ledger.retain(|entry| (entry.robot, entry.round) != (0, ROUND - 1));
-    let last = |round| move |report: &&mut rne_core::LevelReport| report.of == 0 && report.round == round;
+    let last = |round| move |report: &&mut teaming::LevelReport| report.of == 0 && report.round == round;
     evidence(&mut question).reports.iter_mut().find(last(ROUND)).unwrap().energy_level = 100.0;
     assert!(estimates("Kalman", &question)[0].levels[0] < 60.0, "it was not tired, and says 100");
     evidence(&mut question).reports.iter_mut().find(last(ROUND - 1)).unwrap().energy_level = 19.0;

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use rne_core::question::hardest_first;
-use rne_core::{
+use rne_core::NeedVector;
+use teaming::question::hardest_first;
+use teaming::{
     Body, Estimate, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome,
-    Need, NeedId, NeedVector, Question, Quota, RandomSeed, Rating, RobotRound, RoleId, RoundOutcome,
-    SCHEMA_VERSION, Task, TaskId, TrueLevels,
+    Need, NeedId, Question, Quota, RandomSeed, Rating, RobotRound, RoleId, RoundOutcome, SCHEMA_VERSION,
+    Task, TaskId, TrueLevels,
 };
 
 /// Says its health is 100 %, whatever it is.

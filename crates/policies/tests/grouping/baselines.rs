@@ -1,7 +1,7 @@
 //! DIS, ENG, HP_DIS and RANDOM by their definitions, for any number of tasks.
 
 use proptest::prelude::*;
-use rne_core::{Account, GroupSizes, Member, Question, Quota, RandomSeed, RoleId};
+use teaming::{Account, GroupSizes, Member, Question, Quota, RandomSeed, RoleId};
 
 use crate::support::{any_team, decide, drawn_team, question, two_tasks};
 

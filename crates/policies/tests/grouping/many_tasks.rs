@@ -1,7 +1,8 @@
 //! Two, three and four tasks against the oracle.
 
 use policies::RneOptions;
-use rne_core::{NeedVector, Question};
+use rne_core::NeedVector;
+use teaming::Question;
 
 use crate::oracle::{Oracle, as_set, is_close, nats};
 use crate::support::{all_options, decide, drawn_team, question, rne};

@@ -4,9 +4,10 @@
 use policies::RneOptions;
 use policies::rne::{HardRule, MergeReading, ScoreDirection};
 use rne_core::{
-    Member, NeedDistribution, NeedVector, NeedWeights, Question, RelativeNeedsEntropy, RoleId, jeffreys,
-    jensen_shannon, relative_entropy,
+    NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, jeffreys, jensen_shannon,
+    relative_entropy,
 };
+use teaming::{Member, Question, RoleId};
 
 /// Scores that differ by less than this are equal.
 const TIE: f64 = 1e-12;

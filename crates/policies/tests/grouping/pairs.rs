@@ -2,7 +2,7 @@
 
 use policies::RneOptions;
 use policies::rne::Rne;
-use rne_core::{Policy, TrustMeasure};
+use teaming::{Policy, TrustMeasure};
 
 use crate::oracle::nats;
 use crate::support::{all_options, drawn_team, question};

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
-use rne_core::Member;
+use teaming::Member;
 
 use crate::support::{all_options, any_team, decide, drawn_team, names, question, rne, team, two_tasks};
 
@@ -154,6 +154,6 @@ fn every_policys_decision_is_read_as_it_was_written() {
         let decision = registry.parse(policy).unwrap().decide(&question).unwrap();
         decision.assignment.check(&question).unwrap();
         let text = serde_json::to_string(&decision).unwrap();
-        assert_eq!(rne_core::Decision::from_json(&text).unwrap(), decision, "{policy}");
+        assert_eq!(teaming::Decision::from_json(&text).unwrap(), decision, "{policy}");
     }
 }

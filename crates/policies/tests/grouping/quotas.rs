@@ -2,7 +2,7 @@
 
 use policies::RneOptions;
 use proptest::prelude::*;
-use rne_core::{Assignment, GroupSizes, Question, Quota};
+use teaming::{Assignment, GroupSizes, Question, Quota};
 
 use crate::many_tasks::check_against_oracle;
 use crate::support::{all_options, decide, drawn_team, names, question, rne};

@@ -1,9 +1,10 @@
 //! A question of a trial (scenario `paper.ron`, seed 1, round 3), with the answers of the rivals as an
 //! independent program in Python computed them: by brute force, or step by step.
 
-use rne_core::decision::Protocol;
-use rne_core::question::hardest_first;
-use rne_core::{Account, GroupSizes, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, Task};
+use rne_core::NeedVector;
+use teaming::decision::Protocol;
+use teaming::question::hardest_first;
+use teaming::{Account, GroupSizes, Member, Need, Question, Quota, RandomSeed, RoleId, Task};
 
 use crate::rivals::{distrust, spread, total};
 use crate::support::decide;
@@ -120,7 +121,7 @@ fn third_round() -> Question {
     let task = |(name, difficulty, place)| Task { place: Some(place), ..Task::new(name, difficulty) };
     let names = ["hp", "v", "sen", "eng", "res", "cap", "obs"];
     let question = Question {
-        schema_version: rne_core::SCHEMA_VERSION,
+        schema_version: teaming::SCHEMA_VERSION,
         round: 3,
         roles: crate::support::ROLES.map(str::to_owned).to_vec(),
         needs: names.map(|name| Need { name: name.to_owned(), weight: 1.0 }).to_vec(),

@@ -3,10 +3,8 @@
 use policies::utility::UtilityOptions;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{
-    Account, Assignment, GroupSizes, Member, NeedDistribution, NeedWeights, Question, Quota, assignments,
-    relative_entropy,
-};
+use rne_core::{NeedDistribution, NeedWeights, relative_entropy};
+use teaming::{Account, Assignment, GroupSizes, Member, Question, Quota, assignments};
 
 use crate::support::{decide, drawn_team, question};
 

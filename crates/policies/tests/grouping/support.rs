@@ -5,10 +5,9 @@ use policies::rne::{HardRule, MergeReading, ScoreDirection};
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::question::hardest_first;
-use rne_core::{
-    Decision, Member, Need, NeedVector, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task,
-};
+use rne_core::NeedVector;
+use teaming::question::hardest_first;
+use teaming::{Decision, Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
 
 pub const ROLES: [&str; 3] = ["Carrier", "Supplier", "Observer"];
 

@@ -7,9 +7,10 @@ use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::{
-    Member, NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, RoleId, jeffreys,
-    jensen_shannon, relative_entropy,
+    NeedDistribution, NeedVector, NeedWeights, RelativeNeedsEntropy, jeffreys, jensen_shannon,
+    relative_entropy,
 };
+use teaming::{Member, RoleId};
 
 use crate::oracle::{Oracle, as_set, is_close, nats};
 use crate::support::{EASY, HARD, all_options, decide, rne, team, two_tasks};

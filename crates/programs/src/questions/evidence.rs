@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rne_core::{
+use teaming::{
     Body, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome, Need,
     NeedId, Question, Rating, RobotRound, RoundOutcome, TaskId,
 };
@@ -18,8 +18,8 @@ const ROUND_S: f64 = 150.0;
 /// Mates that each robot rates in a round at most.
 const MATES: usize = 10;
 
-/// The question with seven rounds of evidence, asked in the eighth. Robots report every ten seconds and rate up
-/// to ten mates a round.
+/// The question with seven rounds of evidence, asked in the eighth. Robots report every ten seconds and rate
+/// up to ten mates a round.
 #[must_use]
 pub fn with_evidence(question: Question) -> Question {
     let mut draws = ChaCha8Rng::seed_from_u64(11);

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rne_core::MadePolicy;
+use teaming::MadePolicy;
 
 use crate::support::{ask, python, registry_until, small};
 

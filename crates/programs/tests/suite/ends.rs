@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{sleep, spawn};
 use std::time::{Duration, Instant};
 
-use rne_core::{Asked, Deadline, PolicyError};
+use teaming::{Asked, Deadline, PolicyError};
 
 use crate::support::{ask, python, registry_until, small};
 
@@ -139,7 +139,7 @@ fn a_program_without_a_hello_is_waited_for_once() {
     let policy = python(folder.path(), "time.sleep(60)", ", start_s: 1");
     let since = Instant::now();
     assert_eq!(policy.fingerprint().unwrap(), "a program that does not start");
-    assert_eq!(policy.it.basis(), rne_core::Basis::Question);
+    assert_eq!(policy.it.basis(), teaming::Basis::Question);
     assert_eq!(policy.open().err().unwrap().to_string(), "it sent no hello within 1 s (start_s)");
     assert!(since.elapsed() < Duration::from_secs(2), "{:?}", since.elapsed());
 }

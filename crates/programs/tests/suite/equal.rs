@@ -4,7 +4,7 @@ use std::path::Path;
 
 use programs::questions::{question, with_evidence};
 use programs::templates::Language;
-use rne_core::MadePolicy;
+use teaming::MadePolicy;
 
 use crate::support::{ask, exec, is_there};
 

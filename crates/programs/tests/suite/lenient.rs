@@ -1,6 +1,6 @@
 //! What a program may write in more than one way.
 
-use rne_core::{Evidence, Question, TrueLevels};
+use teaming::{Evidence, Question, TrueLevels};
 
 use crate::support::{ask, python, small};
 

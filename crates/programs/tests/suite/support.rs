@@ -5,7 +5,8 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use rne_core::{Asked, Decision, MadePolicy, PolicyError, Question, Registry, Session, TrialStart};
+use programs::{Consent, Launch, Unknown};
+use teaming::{Asked, Decision, MadePolicy, PolicyError, Question, Registry, Session, TrialStart};
 
 /// What each program of a test can call: it reads a message, sends one, says hello, and knows a right answer.
 const PRELUDE: &str = r#"
@@ -33,10 +34,13 @@ def answer(groups=None, **more):
     send({"type": "decision", "id": asked["id"], "decision": {"assignment": {"groups": groups} | more}})
 "#;
 
-/// The built-in policies and programs, which end when this is set.
+/// The built-in policies and programs, which end when this is set. Any program may be started, and none is
+/// remembered.
 pub fn registry_until(stop: &Arc<AtomicBool>) -> Registry {
+    let consent = Consent::new([], Unknown::Allow, |_| {}, stop).forgetting();
+    let launch = Launch { stop: Arc::clone(stop), begin: || {}, longest: None, consent, guard: Vec::new() };
     let mut registry = policies::standard();
-    registry.add(programs::kind(stop, || {})).unwrap();
+    registry.add(programs::kind(launch)).unwrap();
     registry
 }
 

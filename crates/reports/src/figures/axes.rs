@@ -7,7 +7,7 @@ use experiments::sweep::folder::Folder;
 
 use super::band::Band;
 use crate::drawing::{
-    Drawing, Panel, Sketch, difference_heat_map, from_top, is_drawn, layout, line_panel, names, table,
+    Drawing, Panel, Sketch, difference_heat_map, from_top, is_drawn, layout, line_panel, names,
 };
 
 /// The differences between policies over two axes: for each metric a figure with a map for each pair, all
@@ -57,7 +57,7 @@ fn difference_maps_of([down, across]: [&Axis; 2], comparisons: &[Comparison]) ->
              is above, orange where it is below, in one scale. The table says which differences are shown."
         ),
         drawing: Drawing::new(panels, 3, [400.0, 300.0]),
-        csv: table(&["pair", &down.path, &across.path, "difference", "verdict"], rows)?,
+        csv: tables::csv(["pair", &down.path, &across.path, "difference", "verdict"], rows)?,
     })
 }
 
@@ -131,7 +131,7 @@ pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Res
             title: format!("Along {}", axis.path),
             caption: format!("Means of up to {n} trials with their 95 % t intervals (band).{legend}{fixed}"),
             drawing: Drawing::new(panels, 3, [420.0, 320.0]),
-            csv: table(&["metric", "policy", "value", "n", "mean", "half_width"], rows)?,
+            csv: tables::csv(["metric", "policy", "value", "n", "mean", "half_width"], rows)?,
         });
     }
     Ok(all)

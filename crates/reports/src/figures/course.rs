@@ -10,9 +10,7 @@ use super::Part;
 use super::band::Band;
 use super::gather::Gathered;
 use super::metrics::capitalised;
-use crate::drawing::{
-    Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, line_panel, names, table,
-};
+use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, line_panel, names};
 
 /// Rescuees over time, with a band.
 pub(super) fn over_time(
@@ -50,7 +48,7 @@ pub(super) fn over_time(
              each policy."
         ),
         drawing: Drawing::new(panels, 3, [420.0, 320.0]),
-        csv: table(&["metric", "policy", "time_s", "n", "mean", "half_width"], rows)?,
+        csv: tables::csv(["metric", "policy", "time_s", "n", "mean", "half_width"], rows)?,
     })
 }
 
@@ -79,8 +77,9 @@ pub(super) fn membership(
         let count = |round, robot| gathered.groups.get(&(round, robot)).unwrap_or(&nothing);
         let grouped = |round, robot| count(round, robot).iter().sum::<u32>();
         let is_full = |round: &u32| (0..robots).all(|robot| grouped(*round, robot) > 0);
-        let rounds: Vec<u32> = (1..u32::MAX).take_while(is_full).collect();
-        if rounds.is_empty() || robots == 0 {
+        let final_round = gathered.groups.keys().map(|(round, _)| *round).max().unwrap_or(0);
+        let rounds: Vec<u32> = (1..=final_round).take_while(is_full).collect();
+        if rounds.is_empty() {
             continue;
         }
         let share = |round: u32, robot: u32| {
@@ -114,7 +113,7 @@ pub(super) fn membership(
             if least == u32::MAX { 0 } else { least }
         ),
         drawing: Drawing::new(panels, 2, [520.0, 380.0]),
-        csv: table(&columns, rows)?,
+        csv: tables::csv(&columns, rows)?,
     })
 }
 
@@ -159,6 +158,6 @@ pub(super) fn levels(
             rounds with their n."
             .into(),
         drawing: Drawing::new(panels, 2, [480.0, 300.0]),
-        csv: table(&["level", "task", "policy", "round", "n", "mean", "half_width"], rows)?,
+        csv: tables::csv(["level", "task", "policy", "round", "n", "mean", "half_width"], rows)?,
     })
 }

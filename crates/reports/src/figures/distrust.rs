@@ -28,8 +28,8 @@ pub(super) fn largest(distrust: &[Vec<f64>]) -> f64 {
     distrust.iter().flatten().copied().filter(|value| value.is_finite()).fold(0.0, f64::max)
 }
 
-/// The heat map as a panel, in the scale of panels whose largest finite value is `largest`. An infinite value is
-/// drawn above every finite value: it means no trust at all. No cell has its number then, for that of the
+/// The heat map as a panel, in the scale of panels whose largest finite value is `largest`. An infinite value
+/// is drawn above every finite value: it means no trust at all. No cell has its number then, for that of the
 /// infinite cells would be none.
 pub(super) fn distrust_panel(title: &str, names: &[String], distrust: &[Vec<f64>], largest: f64) -> Panel {
     let most = 1000.0 * largest;

@@ -6,7 +6,7 @@ use experiments::Failure;
 use experiments::rounds::{KEYS, SortingAgreement, mean_levels, rounds_of};
 use experiments::run::{Trial, series_times};
 use experiments::sweep::folder::Folder;
-use rne_core::Question;
+use teaming::Question;
 
 /// The data gathered for one policy.
 #[derive(Default)]

@@ -6,10 +6,10 @@ use experiments::rounds::{KEYS, Share, SortingAgreement};
 
 use super::distrust::{distrust_panel, largest};
 use super::gather::Gathered;
-use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names, table};
+use crate::drawing::{Drawing, Panel, Sketch, from_top, heat_map, is_drawn, layout, names};
 
-/// The distrust of each robot towards every other of its role, in the first round of a trial, by the measure of
-/// the policy that decided. All roles have one scale.
+/// The distrust of each robot towards every other of its role, in the first round of a trial, by the measure
+/// of the policy that decided. All roles have one scale.
 pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Option<Sketch>, Failure> {
     let mut with_rounds = experiment.policies.iter().zip(gathered);
     let first = with_rounds
@@ -53,7 +53,7 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
             gathered.first_trial, policy.label
         ),
         drawing: Drawing::new(panels, 3, [400.0, 360.0]),
-        csv: table(&["from", "to", &column], rows)?,
+        csv: tables::csv(["from", "to", &column], rows)?,
     }))
 }
 
@@ -116,6 +116,6 @@ pub(super) fn sorting(
              half takes which task (by chance in the table). n = {n} rounds or more for each policy."
         ),
         drawing: Drawing::new(if is_empty { Vec::new() } else { panels }, 2, [520.0, 320.0]),
-        csv: table(&columns, rows)?,
+        csv: tables::csv(&columns, rows)?,
     })
 }

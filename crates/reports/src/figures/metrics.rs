@@ -14,8 +14,7 @@ use statistics::bootstrap::quantile;
 
 use super::is_quiet;
 use crate::drawing::{
-    Drawing, Panel, Rows, Sketch, colour, columns, forest_plot, interval_panel, is_drawn, layout, names,
-    range, table,
+    Drawing, Panel, Sketch, colour, forest_plot, interval_panel, is_drawn, layout, names, range, within,
 };
 
 /// About the largest number of a policy's trials that are drawn as points, beside those beyond the whiskers;
@@ -44,7 +43,7 @@ fn box_figure(
     let names = names(folder.experiment());
     let step = (folder.experiment().trials as usize).div_ceil(MAX_POINTS).max(1);
     let (mut panels, mut counts) = (Vec::new(), Vec::new());
-    let mut rows = Rows::new(&["metric", "policy", "seed", "value"])?;
+    let mut rows = Vec::new();
     for place in places.iter().filter(|place| !is_quiet(folder, case, **place)) {
         let metric = &metrics[*place];
         let mut plot = BoxPlot::new().with_width(0.6);
@@ -54,7 +53,12 @@ fn box_figure(
         for (i, policy) in policies.iter().enumerate().filter(|(_, policy)| is_drawn(only, &policy.label)) {
             let found = trials(folder, case, i, |metrics| metrics.get(*place));
             for (seed, value) in &found {
-                rows.push(&[&metric.name, &policy.label, &seed.to_string(), &value.to_string()])?;
+                rows.push(vec![
+                    metric.name.clone(),
+                    policy.label.clone(),
+                    seed.to_string(),
+                    value.to_string(),
+                ]);
             }
             let values: Vec<f64> = found.into_iter().map(|(_, value)| value).collect();
             counts.push(values.len());
@@ -93,7 +97,7 @@ fn box_figure(
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, PANEL),
-        csv: rows.finish()?,
+        csv: tables::csv(["metric", "policy", "seed", "value"], rows)?,
     })
 }
 
@@ -163,7 +167,7 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
     let Experiment { policies, metrics, base, .. } = folder.experiment();
     let (names, words) = (names(folder.experiment()), &base.words);
     let (mut panels, mut counts) = (Vec::new(), Vec::new());
-    let mut rows = Rows::new(&["task", "policy", "seed", "energy_per_rescuee", "hp_per_rescuee"])?;
+    let mut rows = Vec::new();
     let [energies, hps] = ["energy_per_rescuee", "hp_per_rescuee"].map(|name| metrics.declared(name));
     for (energy, hp) in energies.into_iter().zip(hps) {
         let part = metrics[energy].part();
@@ -172,7 +176,7 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
             let found = trials(folder, case, i, |metrics| Some((metrics.get(energy)?, metrics.get(hp)?)));
             for (seed, (energy, hp)) in &found {
                 let numbers = [seed.to_string(), energy.to_string(), hp.to_string()];
-                rows.push(&[part, &policy.label, &numbers[0], &numbers[1], &numbers[2]])?;
+                rows.push([vec![part.to_owned(), policy.label.clone()], numbers.to_vec()].concat());
             }
             let points: Vec<(f64, f64)> = found.into_iter().map(|(_, point)| point).collect();
             counts.push(points.len());
@@ -190,11 +194,8 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
             [range(all.iter().map(|(energy, _)| *energy)), range(all.iter().map(|(_, hp)| *hp))];
         let layout = layout(&plots, part)
             .with_x_label(words.text("energy per rescuee"))
-            .with_y_label(words.text("HP per rescuee"))
-            .with_x_axis_min(energies[0])
-            .with_x_axis_max(energies[1])
-            .with_y_axis_min(hps[0])
-            .with_y_axis_max(hps[1]);
+            .with_y_label(words.text("HP per rescuee"));
+        let layout = within(layout, energies, hps);
         panels.push(Panel { metric: metrics[energy].name.clone(), plots, layout });
     }
     Ok(Sketch {
@@ -207,7 +208,7 @@ pub(super) fn costs(folder: &Folder, case: usize, only: Option<&[String]>) -> Re
             per_box(&counts)
         ),
         drawing: Drawing::new(panels, 3, [400.0, 320.0]),
-        csv: rows.finish()?,
+        csv: tables::csv(["task", "policy", "seed", "energy_per_rescuee", "hp_per_rescuee"], rows)?,
     })
 }
 
@@ -236,7 +237,7 @@ pub(super) fn forest(experiment: &Experiment, comparisons: &[&Comparison]) -> Re
              below.{dotted}"
         ),
         drawing: Drawing::new(panels, 3, [420.0, 280.0]),
-        csv: table(&columns(DIFFERENCES), comparisons.iter().copied().map(differences_row))?,
+        csv: tables::csv(DIFFERENCES.split(','), comparisons.iter().copied().map(differences_row))?,
     })
 }
 

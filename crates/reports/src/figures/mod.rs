@@ -17,7 +17,7 @@ use experiments::sweep::folder::Folder;
 use crate::drawing::{Figure, Sketch};
 
 pub use distrust::distrust_map;
-pub(crate) use regret::regret;
+pub use regret::regret_figures;
 pub(crate) use sensitivity::sensitivity;
 
 /// Which part of a case is drawn.

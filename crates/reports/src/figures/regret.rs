@@ -7,14 +7,14 @@ use experiments::regret::{Analysis, DecisionRow, Estimate};
 use statistics::Moments;
 use statistics::paired::t_half_width;
 
-use crate::drawing::{Drawing, Sketch, forest_plot, interval_panel, line_panel, range, table};
+use crate::drawing::{Drawing, Sketch, forest_plot, interval_panel, line_panel, range};
 
 /// Regret round by round, and the share of the achievable that each policy achieves.
 ///
 /// # Errors
 /// None: tables are written to memory.
-pub(crate) fn regret(analyses: &[Analysis]) -> Result<Vec<Sketch>, Failure> {
-    Ok(vec![by_round(analyses)?, achieved(analyses)?])
+pub fn regret_figures(analyses: &[Analysis]) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    Ok(Sketch::files(vec![by_round(analyses)?, achieved(analyses)?]))
 }
 
 fn by_round(analyses: &[Analysis]) -> Result<Sketch, Failure> {
@@ -53,7 +53,7 @@ fn by_round(analyses: &[Analysis]) -> Result<Sketch, Failure> {
             `fair draw` and `worst` are those of the mean and of the worst assignment"
             .to_owned(),
         drawing: Drawing::new(panels, 2, [460.0, 340.0]),
-        csv: table(&["metric", "policy", "round", "mean", "half_width"], rows)?,
+        csv: tables::csv(["metric", "policy", "round", "mean", "half_width"], rows)?,
     })
 }
 
@@ -93,6 +93,9 @@ fn achieved(analyses: &[Analysis]) -> Result<Sketch, Failure> {
             over trials"
             .to_owned(),
         drawing: Drawing::new(panels, 2, [460.0, 280.0]),
-        csv: table(&["metric", "policy", "achieved_percent", "low", "high", "gained", "achievable"], rows)?,
+        csv: tables::csv(
+            ["metric", "policy", "achieved_percent", "low", "high", "gained", "achievable"],
+            rows,
+        )?,
     })
 }

@@ -5,7 +5,7 @@ use experiments::explore::{Index, Row};
 use kuva::plot::ForestPlot;
 use statistics::sensitivity::Known;
 
-use crate::drawing::{Drawing, Panel, Sketch, columns, forest_plot, interval_panel, range, table};
+use crate::drawing::{Drawing, Panel, Sketch, forest_plot, interval_panel, range};
 
 const OF_SHOWN: &str = "#0072B2";
 const OF_OTHERS: &str = "#999999";
@@ -71,7 +71,7 @@ const HEADER_OF_SHARES: &str =
 /// The table of the indices.
 fn csv(rows: &[Row]) -> Result<String, Failure> {
     let is_of_effects = rows.iter().any(|row| matches!(row.index, Index::Effects { .. }));
-    let header = columns(if is_of_effects { HEADER } else { HEADER_OF_SHARES });
+    let header = if is_of_effects { HEADER } else { HEADER_OF_SHARES };
     let cells = |row: &Row| {
         let mut cells = vec![
             row.outcome.who.clone(),
@@ -97,8 +97,8 @@ fn csv(rows: &[Row]) -> Result<String, Failure> {
             }
             Index::Chance { first } => add(first),
         }
-        cells.resize(header.len(), String::new());
+        cells.resize(header.split(',').count(), String::new());
         cells
     };
-    table(&header, rows.iter().map(cells))
+    Ok(tables::csv(header.split(','), rows.iter().map(cells))?)
 }

@@ -1,10 +1,8 @@
 //! Tables of the effects of a sweep's axes, with a row for each case or change.
 
-use comfy_table::{Cell, Table};
 use experiments::comparison::{Comparison, Effect, Interaction, Verdict, short};
 use experiments::experiment::VARIANT;
-
-use super::{headed, right};
+use tables::{Table, labelled, right};
 
 /// A row for each change of an axis, a column for each policy: the change of the policy's mean in percent,
 /// with its interval. If all changes are from the same case and over the same seeds, the first row has the
@@ -18,7 +16,7 @@ pub fn effects_table(effects: &[&Effect]) -> Table {
         }
         None => "-".to_owned(),
     };
-    let cells = effects.iter().map(|effect| Entry {
+    let cells = effects.iter().map(|effect| Pivot {
         row: change(&effect.path, &effect.values, &effect.others),
         column: effect.policy.clone(),
         text: percent(effect),
@@ -28,13 +26,13 @@ pub fn effects_table(effects: &[&Effect]) -> Table {
 
 /// The means before any change, if all changes are from the same case and each policy has the same mean there
 /// in all of them.
-fn means_before<'e>(effects: &'e [&Effect]) -> impl Iterator<Item = Entry> + 'e {
+fn means_before<'e>(effects: &'e [&Effect]) -> impl Iterator<Item = Pivot> + 'e {
     let before = |effect: &Effect| effect.means.map(|[there, _]| there);
     let is_alike = |a: &Effect, b: &Effect| a.policy != b.policy || before(a) == before(b);
     let is_one = effects.iter().all(|effect| {
         effect.reference == effects[0].reference && effects.iter().all(|other| is_alike(effect, other))
     });
-    effects.iter().filter(move |effect| is_one && effect.case == effects[0].case).map(move |effect| Entry {
+    effects.iter().filter(move |effect| is_one && effect.case == effects[0].case).map(move |effect| Pivot {
         row: format!("mean, {}", place(&[(effect.path.clone(), effect.values[0].clone())])),
         column: effect.policy.clone(),
         text: before(effect).map_or_else(|| "-".to_owned(), short),
@@ -48,7 +46,7 @@ pub fn interactions_table(interactions: &[&Interaction]) -> Table {
         Some((change, [low, high])) => with_interval(change, low, high, one.is_found()),
         None => "-".to_owned(),
     };
-    let cells = interactions.iter().map(|one| Entry {
+    let cells = interactions.iter().map(|one| Pivot {
         row: change(&one.path, &one.values, &one.others),
         column: format!("{} - {}", one.a, one.b),
         text: text(one),
@@ -62,7 +60,7 @@ pub fn differences_table(comparisons: &[&Comparison]) -> Table {
         Some((difference, [low, high])) => with_interval(difference, low, high, one.verdict.is_shown()),
         None => "-".to_owned(),
     };
-    let cells = comparisons.iter().map(|one| Entry {
+    let cells = comparisons.iter().map(|one| Pivot {
         row: place(&one.axes),
         column: format!("{} - {}", one.a, one.b),
         text: text(one),
@@ -84,7 +82,7 @@ pub fn cases_table(comparisons: &[&Comparison]) -> Table {
         |one: &Comparison| one.axes.iter().map(|(_, value)| value.as_str()).collect::<Vec<_>>().join(", ");
     let axes = comparisons.first().map_or(&[][..], |one| &one.axes);
     let title = axes.iter().map(|(path, _)| path.as_str()).collect::<Vec<_>>().join(", ");
-    let cells = comparisons.iter().map(|one| Entry {
+    let cells = comparisons.iter().map(|one| Pivot {
         row: values(one),
         column: format!("{} - {}", one.a, one.b),
         text: text(one),
@@ -92,14 +90,14 @@ pub fn cases_table(comparisons: &[&Comparison]) -> Table {
     pivoted(&title, cells)
 }
 
-struct Entry {
+struct Pivot {
     row: String,
     column: String,
     text: String,
 }
 
 /// Arranges entries in a table, with rows and columns in the order in which they first occur.
-fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
+fn pivoted(title: &str, entries: impl Iterator<Item = Pivot>) -> Table {
     let (mut rows, mut columns): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
     let mut texts: Vec<Vec<String>> = Vec::new();
     let place = |names: &mut Vec<String>, name: String| {
@@ -108,18 +106,15 @@ fn pivoted(title: &str, entries: impl Iterator<Item = Entry>) -> Table {
             names.len() - 1
         })
     };
-    for Entry { row, column, text } in entries {
+    for Pivot { row, column, text } in entries {
         let (row, column) = (place(&mut rows, row), place(&mut columns, column));
         texts.resize(rows.len(), Vec::new());
         let width = texts[row].len().max(column + 1);
         texts[row].resize(width, "-".to_owned());
         texts[row][column] = text;
     }
-    let mut table = headed(std::iter::once(Cell::new(title)).chain(columns.iter().map(Cell::new)));
-    for (row, texts) in rows.iter().zip(&texts) {
-        table.add_row(std::iter::once(Cell::new(row)).chain(texts.iter().map(|text| right(text))));
-    }
-    table
+    let rows = rows.iter().zip(&texts).map(|(row, texts)| labelled(row, texts.iter().map(right)));
+    Table::of(labelled(title, &columns), rows)
 }
 
 /// `value (low to high)`, with a star if the difference is statistically shown.

@@ -1,9 +1,7 @@
 //! Tables of how policies group.
 
-use comfy_table::{Cell, Table};
 use experiments::rounds::{GroupLevels, KEYS, Share, SortingAgreement};
-
-use super::{Format, headed, right, shown_as};
+use tables::{Entry, Format, Table, right, right_or_dash, shown_as};
 
 /// How often each policy's split equals sorting.
 pub fn likeness_table(policies: &[(String, [SortingAgreement; 3])]) -> Table {
@@ -15,27 +13,27 @@ pub fn likeness_table(policies: &[(String, [SortingAgreement; 3])]) -> Table {
         .collect();
     let before = ["policy", "rounds", "sorted by", "split"].map(str::to_owned);
     let header = before.into_iter().chain(roles.clone()).chain(["higher".to_owned()]);
-    let mut table = headed(header.collect::<Vec<String>>());
+    let mut table = Table::new(header);
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let beside = |share: &Share| match (share.share(), share.chance()) {
-        (Some(share), Some(chance)) => right(&format!("{} ({})", percent(share), percent(chance))),
+        (Some(share), Some(chance)) => right(format!("{} ({})", percent(share), percent(chance))),
         _ => right("-"),
     };
     for (label, agreements) in policies {
         for (i, (key, likeness)) in KEYS.iter().zip(agreements).enumerate() {
             let first = |text: &str| if i == 0 || is_repeated() { text.to_owned() } else { String::new() };
             let mut row = vec![
-                Cell::new(first(label)),
-                right(&first(&likeness.rounds().to_string())),
-                Cell::new(key.name),
+                first(label).into(),
+                right(first(&likeness.rounds().to_string())),
+                Entry::from(key.name),
                 beside(&likeness.split),
             ];
             row.extend(roles.iter().map(|name| {
                 let role = likeness.roles.iter().find(|role| format!("{}s", role.role) == *name);
                 role.map_or_else(|| right("-"), |role| beside(&role.share))
             }));
-            row.push(right(&likeness.harder_is_higher.share().map_or("-".to_owned(), percent)));
-            table.add_row(row);
+            row.push(right_or_dash(likeness.harder_is_higher.share(), percent));
+            table.add(row);
         }
     }
     table
@@ -49,19 +47,19 @@ pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
         header.extend(tasks.iter().map(|task| format!("{level} {task}")));
         header.push(format!("{level} difference"));
     }
-    let mut table = headed(header);
-    let shown = |level: f64| right(&format!("{level:.1}"));
+    let mut table = Table::new(header);
+    let shown = |level: f64| right(format!("{level:.1}"));
     let mut last = "";
     for row in levels {
         let label = if row.policy == last && !is_repeated() { "" } else { &row.policy };
         last = &row.policy;
-        let mut cells = vec![Cell::new(label), right(&row.round.to_string()), right(&row.count.to_string())];
+        let mut cells = vec![Entry::from(label), right(row.round), right(row.count)];
         for level in [0, 1] {
             cells.extend(row.groups.iter().map(|group| shown(group[level])));
             let ends = row.groups.first().zip(row.groups.last());
-            cells.push(right(&ends.map_or("-".to_owned(), |(a, b)| format!("{:+.1}", a[level] - b[level]))));
+            cells.push(right_or_dash(ends, |(a, b)| format!("{:+.1}", a[level] - b[level])));
         }
-        table.add_row(cells);
+        table.add(cells);
     }
     table
 }

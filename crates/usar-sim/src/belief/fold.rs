@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use super::known::{KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
 use super::news::{News, Opening, Seen};

@@ -2,8 +2,8 @@
 
 use std::sync::OnceLock;
 
-use rne_core::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 use serde::{Deserialize, Serialize};
+use teaming::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 
 use crate::hash::part;
 use crate::ids::RobotId;

@@ -1,9 +1,9 @@
 //! The beliefs of a team, and which robots share which: by the scenario's rule, those of a group, or each
-//! robot in the field has its own and may hear from its mates. Robots without a group share the belief of the team at home. What a robot
-//! says of itself, the whole team knows.
+//! robot in the field has its own and may hear from its mates. Robots without a group share the belief of the
+//! team at home. What a robot says of itself, the whole team knows.
 
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use super::fold::Belief;
 use super::ledger::Ledger;

@@ -1,6 +1,6 @@
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
-use rne_core::TaskId;
+use teaming::TaskId;
 
 use super::*;
 use crate::ids::{RescueeId, RobotId};

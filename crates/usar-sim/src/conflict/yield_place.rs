@@ -27,8 +27,8 @@ const CROWD_COST: u32 = 150;
 /// Length of the other robot's route ahead, and of its trail behind, that is to be left free, in metres.
 const CLEARED_WAY_M: f32 = 30.0;
 
-/// Under the paper's rule, an obstacle is left out if the robot is inside its inflated outline and within this
-/// distance of one of its corners in both x and y, in metres.
+/// Under the paper's rule, an obstacle is left out if the robot is inside its inflated outline and within
+/// this distance of one of its corners in both x and y, in metres.
 const LEAVE_M: f32 = 0.8;
 
 /// A robot that is too close to an obstacle may come this much closer on its way along it, in metres.

@@ -1,8 +1,8 @@
 //! The activity of each robot in the mission.
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use super::progress::Progress;
 use crate::ids::RescueeId;

@@ -2,9 +2,9 @@
 //! settled first, whatever the robots' ids.
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
+use teaming::TaskId;
 
 use super::{Crew, Scene};
 use crate::belief::Holder;

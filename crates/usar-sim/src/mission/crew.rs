@@ -1,7 +1,7 @@
 //! The crew: what each robot does, and the groups in which robots work.
 
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use super::agent::{Activity, Agent};
 use super::round::{Fitness, unfit_cause};

@@ -33,8 +33,8 @@ impl Crew {
     }
 
     fn follow_errand(&mut self, id: RobotId, scene: &mut Scene) {
+        self.note_way(id, scene);
         let robot = &scene.beliefs.team[id.index()];
-        self.note_way(robot, scene.navigator);
         let (position, is_at_place) = (robot.position, scene.is_at_place(robot));
         let traveller = scene.navigator.traveller(id);
         let is_beside_place = traveller.has_arrived(position) && !is_at_place;
@@ -52,10 +52,7 @@ impl Crew {
             scene.log.push(Event::ErrandDone { robot: id });
         } else if let Some(cause) = cause.filter(|_| !scene.awaits_opening) {
             self.agents[id.index()].muster = position;
-            scene.log.push(Event::Unreachable { robot: id, place: place.into() });
-            if cause == CutOffCause::NoProgress {
-                self.cut_off(id, place, cause, scene);
-            }
+            self.give_up(id, place, cause, scene);
         } else {
             return;
         }

@@ -13,8 +13,8 @@ mod scene;
 mod settle;
 mod work;
 
-use rne_core::{Question, TaskId};
 use serde::{Deserialize, Serialize};
+use teaming::{Question, TaskId};
 
 pub use agent::{Activity, Agent};
 pub use claims::Claims;

@@ -1,20 +1,24 @@
 //! The watchdog: a robot that comes no nearer gives up on its errand, and the team does not wait for one that
-//! comes no nearer to its home or its rest place.
+//! comes no nearer to its home or its rest place. As long as one of those for which a robot waits gets on,
+//! the robot gives up nothing.
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use super::{Activity, Crew, Scene};
+use crate::conflict::Directive;
 use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
-use crate::model::Model;
-use crate::navigation::Navigator;
+use crate::model::{LATE_SHARE, Model};
 use crate::robot::Robot;
 
 /// Least decrease of the remaining route that counts as coming nearer, in metres. A smaller one may be a push
 /// by another robot.
 const NEARER_M: f32 = 0.5;
+
+/// A robot slower than this, in metres per second, may take in proportion longer to come nearer.
+const USUAL_MPS: f64 = 1.0;
 
 /// The progress of a robot towards one goal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -24,7 +28,8 @@ pub struct Progress {
     nearest_m: Option<f32>,
     /// The longest remaining route since the robot last came nearer, in metres.
     longest_m: f32,
-    /// Steps since the robot last came nearer or stood at its goal.
+    /// Steps since the robot last came nearer or stood at its goal. Of a robot that waits for others, no more
+    /// than those after which it is late.
     pub held_up_steps: u64,
 }
 
@@ -59,7 +64,7 @@ impl Crew {
             if !robot.is_able() {
                 continue;
             }
-            let is_nearer = self.note_way(robot, scene.navigator);
+            let is_nearer = self.note_way(id, scene);
             let agent = &mut self.agents[id.index()];
             if is_nearer || !agent.activity.is_way_back() {
                 agent.is_cut_off = false;
@@ -83,14 +88,17 @@ impl Crew {
 
     /// Notes the remaining route of a robot. Returns whether the robot came nearer, has arrived, or has no
     /// goal.
-    pub(super) fn note_way(&mut self, robot: &Robot, navigator: &mut Navigator) -> bool {
-        let progress = &mut self.agents[robot.id.index()].progress;
-        let traveller = navigator.traveller(robot.id);
+    pub(super) fn note_way(&mut self, id: RobotId, scene: &mut Scene) -> bool {
+        let position = scene.beliefs.team[id.index()].position;
+        let traveller = scene.navigator.traveller(id);
         let goal = traveller.goal().map(|goal| goal.point);
-        if traveller.is_settled_at(robot.position) && progress.goal == goal {
+        if traveller.is_settled_at(position) && self.agents[id.index()].progress.goal == goal {
             return true; // nothing has changed since it was noted last
         }
-        let (left_m, is_there) = navigator.way_left(robot.id, robot.position);
+        let late_steps = self.late_while_others_get_on(id, scene);
+        let (left_m, is_there) = scene.navigator.way_left(id, position);
+        let progress = &mut self.agents[id.index()].progress;
+        progress.held_up_steps = late_steps.unwrap_or(progress.held_up_steps);
         let is_nearer = progress.note(goal, left_m);
         if is_there {
             progress.held_up_steps = 0;
@@ -98,21 +106,47 @@ impl Crew {
         is_nearer || is_there
     }
 
+    /// The steps after which a robot is late, if it is and a robot for which it waits is not, or one for
+    /// which that robot waits, and so on.
+    fn late_while_others_get_on(&self, id: RobotId, scene: &Scene) -> Option<u64> {
+        let (team, model) = (&scene.beliefs.team, scene.model);
+        let is_late = |robot: &Robot| self.is_held_up_for(LATE_SHARE, robot, model);
+        if !is_late(&team[id.index()]) {
+            return None;
+        }
+        let gets_on = |id: RobotId| {
+            let (robot, activity) = (&team[id.index()], self.agents[id.index()].activity);
+            let is_under_way = !matches!(activity, Activity::Standby | Activity::Home);
+            let has_arrived = || scene.navigator.traveller(id).has_arrived(robot.position);
+            is_under_way && robot.is_able() && !has_arrived() && !is_late(robot)
+        };
+        let waits_for = |id: &RobotId| match scene.directives.get(id.index())? {
+            Directive::Retreat { room_for, .. } => Some(*room_for),
+            directive => directive.waits_for(),
+        };
+        let mut ahead = std::iter::successors(waits_for(&id), waits_for).take(team.len());
+        ahead.any(gets_on).then(|| self.patience(LATE_SHARE, &team[id.index()], model))
+    }
+
     /// Whether a robot has come no nearer to its goal for `mission.cut_off_s` plus the time that its longest
     /// detour takes.
     pub(super) fn is_held_up(&self, robot: &Robot, model: &Model) -> bool {
-        self.is_held_up_for(model.mission.cut_off_s, robot, model)
+        self.is_held_up_for(1.0, robot, model)
     }
 
-    /// The same for another, longer time, in seconds.
-    fn is_held_up_for(&self, seconds: f64, robot: &Robot, model: &Model) -> bool {
-        let progress = &self.agents[robot.id.index()].progress;
-        let steps = progress.held_up_steps;
-        if steps <= model.mission.cut_off_steps || steps <= model.control_steps_in(seconds) {
-            return false;
-        }
-        let detour_s = f64::from(progress.allowed_way_m()) / self.speed_of(model, robot).max(1e-6);
-        steps > model.control_steps_in(seconds + detour_s)
+    /// The same for so many times `mission.cut_off_s`.
+    fn is_held_up_for(&self, times: f64, robot: &Robot, model: &Model) -> bool {
+        let steps = self.agents[robot.id.index()].progress.held_up_steps;
+        steps > model.mission.late_steps && steps > self.patience(times, robot, model)
+    }
+
+    /// So many times `mission.cut_off_s`, longer for a slow robot, plus the time that its longest detour
+    /// takes, in control steps.
+    fn patience(&self, times: f64, robot: &Robot, model: &Model) -> u64 {
+        let speed = self.speed_of(model, robot).max(1e-6);
+        let detour_s = f64::from(self.agents[robot.id.index()].progress.allowed_way_m()) / speed;
+        let seconds = times * model.mission.cut_off_s * (USUAL_MPS / speed).max(1.0);
+        model.control_steps_in(seconds + detour_s)
     }
 
     /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to
@@ -134,7 +168,7 @@ impl Crew {
             let is_home = || scene.navigator.traveller(robot.id).has_arrived(robot.position);
             match agent.activity {
                 Activity::Home if is_home() => true,
-                _ => agent.is_cut_off && self.is_held_up_for(2.0 * model.mission.cut_off_s, robot, model),
+                _ => agent.is_cut_off && self.is_held_up_for(2.0, robot, model),
             }
         };
         let mut able = scene.beliefs.team.iter().filter(|robot| robot.is_able());
@@ -165,10 +199,7 @@ impl Crew {
         let is_beside_slot = traveller.has_arrived(robot.position) && !scene.is_at_place(robot);
         let cause = if is_beside_slot { Some(CutOffCause::NoWay) } else { self.held_up_cause(id, scene) };
         let Some(cause) = cause.filter(|_| is_for_slot) else { return };
-        scene.log.push(Event::Unreachable { robot: id, place: slot.into() });
-        if cause == CutOffCause::NoProgress {
-            self.cut_off(id, slot, cause, scene);
-        }
+        self.give_up(id, slot, cause, scene);
         let agent = &mut self.agents[id.index()];
         agent.rests_given_up |= 1 << agent.rest_at.0;
         let tasks = self.groups.len() as u16;
@@ -176,6 +207,14 @@ impl Crew {
         match others.find(|task| !agent.has_given_up_rest(*task)) {
             Some(next) => agent.rest_at = next,
             None => agent.activity = Activity::Returning,
+        }
+    }
+
+    /// A robot gives up on a place: because it knows no way, or because it comes no nearer.
+    pub(super) fn give_up(&mut self, id: RobotId, place: Vector, cause: CutOffCause, scene: &mut Scene) {
+        match cause {
+            CutOffCause::NoWay => scene.log.push(Event::Unreachable { robot: id, place: place.into() }),
+            CutOffCause::NoProgress => self.cut_off(id, place, cause, scene),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The question to the policy: how the fit robots are to be grouped.
 
-use rne_core::{GroupSizes, Member, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
+use teaming::{GroupSizes, Member, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
 use crate::belief::Belief;
 use crate::model::{Model, NeedModel, TaskModel};

@@ -1,6 +1,6 @@
 //! Between rounds: the end of one, the opening of the next, and the departure of the groups.
 
-use rne_core::Assignment;
+use teaming::Assignment;
 
 use super::question::question;
 use super::{Activity, Mission, Pending, Scene};

@@ -1,10 +1,11 @@
 //! The scene of a decision: the trial as the robots know it in one step.
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
+use teaming::TaskId;
 
 use super::GIVE_UP_S;
 use crate::belief::Beliefs;
+use crate::conflict::Directive;
 use crate::event::EventLog;
 use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
@@ -23,6 +24,8 @@ pub struct Scene<'s> {
     pub sent: &'s mut Vec<Report>,
     /// The journeys of the robots.
     pub navigator: &'s mut Navigator,
+    /// What each robot did last, and for which robot it waits; none before the first step.
+    pub directives: &'s [Directive],
     /// The log of the step's events.
     pub log: &'s mut EventLog,
     /// What robots say of themselves, where the base does not know how they are.

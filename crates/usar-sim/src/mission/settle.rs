@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use rne_core::question::MAX_TASKS;
+use teaming::question::MAX_TASKS;
 
 use super::round::{levels_after_rest, rest_steps};
 use super::{Activity, Mission, Scene};

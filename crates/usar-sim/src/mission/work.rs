@@ -1,11 +1,15 @@
 //! Work in the field: approaching rescuees, the search for more, and the end of a task.
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
+use teaming::TaskId;
 
-use super::{Activity, Mission, Scene};
-use crate::event::Event;
+use super::{Activity, Mission, SWEEP_M, Scene};
+use crate::event::{CutOffCause, Event};
 use crate::ids::{RescueeId, RobotId};
+
+/// A robot that has come no nearer to a place of its sweep for this long, in seconds, leaves it to a member
+/// of its group that is there.
+const TAKEN_AFTER_S: f64 = 10.0;
 
 impl Mission {
     /// Chooses a robot's next activity, if it is free to choose. `claim` is the rescuee that it may approach,
@@ -45,19 +49,35 @@ impl Mission {
         }
     }
 
-    /// Gives up on a rescuee that cannot be reached.
+    /// Gives up on a rescuee that cannot be reached, or to which the robot comes no nearer.
     fn give_up(&mut self, id: RobotId, task: TaskId, rescuee: RescueeId, scene: &mut Scene) {
         self.claims.given_up[rescuee.index()] = true;
-        if let Some(place) = scene.place_of(id, task, rescuee) {
-            scene.log.push(Event::Unreachable { robot: id, place: place.into() });
+        if let Some(at) = scene.place_of(id, task, rescuee) {
+            let (robot, place, cause) = (id, at.into(), CutOffCause::NoProgress);
+            let knows_no_way = is_out_of_reach(id, at, scene);
+            let cut_off = Event::CutOff { robot, place, cause };
+            scene.log.push(if knows_no_way { Event::Unreachable { robot, place } } else { cut_off });
         }
         self.release_claim(id);
         self.crew.agent(id).activity = Activity::Searching;
     }
 
-    /// Goes on to the next place of the sweep if the present one was reached or cannot be reached. A robot
-    /// with a full load ends its sweep.
+    /// Whether a robot has come no nearer to the present place of its sweep for a while, and a member of its
+    /// group is there.
+    fn is_taken(&self, id: RobotId, scene: &Scene) -> bool {
+        let agent = &self.crew.agents[id.index()];
+        let (Some(place), Some(task)) = (agent.sweep.last(), agent.task) else { return false };
+        let is_there = |mate: &RobotId| {
+            *mate != id && (scene.beliefs.team[mate.index()].position - *place).length() <= SWEEP_M
+        };
+        agent.progress.held_up_steps > scene.model.control_steps_in(TAKEN_AFTER_S)
+            && self.crew.groups[task.index()].members.iter().any(is_there)
+    }
+
+    /// Goes on to the next place of the sweep if the present one was reached, is taken or cannot be reached.
+    /// A robot with a full load ends its sweep.
     fn go_on_searching(&mut self, id: RobotId, scene: &Scene, is_held_up: bool) {
+        let is_held_up = is_held_up || self.is_taken(id, scene);
         let agent = self.crew.agent(id);
         let (robot, traveller) = (&scene.beliefs.team[id.index()], scene.navigator.traveller(id));
         if robot.can_carry() && robot.free_capacity() == 0 {

@@ -27,6 +27,8 @@ pub struct TaskArea {
     spacing: f32,
     /// Distance between the waiting places of robots that fly.
     air_spacing: f32,
+    /// Waiting places in a row are at least so many.
+    least_in_row: usize,
     home: Vector,
 }
 
@@ -43,9 +45,16 @@ impl TaskArea {
             muster_margin: 0.6 * scenario.mission.area_margin_m as f32,
             spacing: spacing(RoleKind::Ground),
             air_spacing: spacing(RoleKind::Aerial),
+            least_in_row: 1,
             home,
         };
-        let last = area.muster(robots.saturating_sub(1));
+        let is_outside =
+            |place: Vector| place.cmplt(Vector::ZERO).any() || place.cmpgt(vector(scenario.arena_m)).any();
+        let last = |area: &Self| area.muster(robots.saturating_sub(1));
+        if is_outside(last(&area)) {
+            area.least_in_row = robots.isqrt(); // as many as there are rows: before a small block, they lead far
+        }
+        let last = last(&area);
         let beyond = (last - last.clamp(area.block_min, area.block_max)).abs().max_element();
         area.margin = area.margin.max(beyond + area.spacing);
         area
@@ -118,7 +127,7 @@ impl TaskArea {
         let facing_y = toward.y.abs() * half.x >= toward.x.abs() * half.y;
         let (length, depth, sign) =
             if facing_y { (half.x, half.y, toward.y.signum()) } else { (half.y, half.x, toward.x.signum()) };
-        let per_row = (2.0 * length / self.spacing).floor().max(1.0) as usize;
+        let per_row = ((2.0 * length / self.spacing).floor() as usize).max(self.least_in_row);
         let (row, place) = (rank / per_row, rank % per_row);
         let along = (place as f32 - (per_row - 1) as f32 / 2.0) * self.spacing;
         let out = sign * (depth + self.muster_margin + row as f32 * self.spacing);
@@ -139,6 +148,7 @@ mod tests {
             muster_margin: 2.4,
             spacing: 1.6,
             air_spacing: 2.0,
+            least_in_row: 1,
             home: Vector::new(40.0, 10.0),
         }
     }
@@ -170,6 +180,19 @@ mod tests {
             assert!(area.contains(*place) && place.y < area.block_min.y, "{place}");
             assert!(places[..i].iter().all(|other| (*other - *place).length() > 1.5));
         }
+    }
+
+    #[test]
+    fn waiting_places_before_a_small_block_are_in_a_block_themselves_if_a_line_leaves_the_arena() {
+        let paper = include_str!("../../../../scenarios/paper.ron");
+        let scenario = Scenario::parse(paper, "paper.ron".as_ref()).unwrap();
+        let file = TaskFile { size_m: [2.0, 1.0], center: [35.0, 30.0], ..scenario.tasks[0].clone() };
+        let depth = |robots: usize| {
+            let area = TaskArea::new(&scenario, &file, Vector::new(35.0, 2.0), robots);
+            let outside = (0..robots).filter(|rank| area.muster(*rank).y < 0.0).count();
+            (outside, (area.muster(0).y - area.muster(robots - 1).y).round())
+        };
+        assert_eq!([depth(4), depth(49)], [(0, 5.0), (0, 10.0)], "a line of four, seven rows of seven");
     }
 
     #[test]

@@ -6,10 +6,10 @@ use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
-use rne_core::{RoleId, TaskId};
+use teaming::{RoleId, TaskId};
 
 use super::places::{RestSlots, rescuee_places};
-use crate::geometry::{Places, vector};
+use crate::geometry::{Outline, Places, vector};
 use crate::ids::RobotId;
 use crate::planning::Planner;
 use crate::scenario::{
@@ -93,7 +93,7 @@ impl Layout {
             layout.scatter(&trial)?;
             layout.add_later(scenario);
             if !scenario.errands.is_empty() {
-                return Ok(layout); // an errand that leads nowhere is found out by the robot
+                return Ok(layout); // robots find out which errands lead nowhere: see [`Self::out_of_reach`]
             }
             match layout.check_passages(scenario) {
                 Ok(()) => return Ok(layout),
@@ -178,17 +178,20 @@ impl Layout {
         self.zones.len() - after.count()
     }
 
+    /// The debris that may block a passage for good: events neither place nor remove it.
+    pub(super) fn lasting(&self) -> Vec<Outline> {
+        let stays = |(number, _): &(usize, &DebrisFile)| !self.gates.contains_key(number);
+        self.debris.iter().enumerate().filter(stays).map(|(_, file)| file.outline()).collect()
+    }
+
     /// Checks that each ground robot can reach every place that a mission needs. Robots of one radius are
     /// checked together, the largest first.
     fn check_passages(&self, scenario: &Scenario) -> Result<(), LayoutError> {
-        // Pieces that events place or remove do not block a passage for good.
-        let stays = |(number, _): &(usize, &DebrisFile)| !self.gates.contains_key(number);
-        let outlines: Vec<_> =
-            self.debris.iter().enumerate().filter(stays).map(|(_, file)| file.outline()).collect();
-        let planner = Planner::new(scenario);
+        let (planner, outlines) = (Planner::new(scenario), self.lasting());
         for radius_m in scenario.ground_radii_m().into_iter().rev() {
             let (places, Some(first)) = self.places_needed(scenario, radius_m) else { continue };
-            if let Some((to, _)) = planner.first_unreachable(radius_m as f32, &outlines, first, &places) {
+            if let Some((to, _)) = planner.ways(radius_m as f32, &outlines).first_unreachable(first, &places)
+            {
                 return Err(LayoutError::NoPassage { to: to.clone(), radius_m });
             }
         }

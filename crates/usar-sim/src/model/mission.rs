@@ -8,6 +8,10 @@ use crate::geometry::vector;
 use crate::ids::RobotId;
 use crate::scenario::{EmptyBattery, Errand, MissionRules, TurnBack};
 
+/// A robot is late, and no longer gets on, once this share of its time is over. Whenever a robot for which it
+/// waits gets on, the rest of its time begins anew.
+pub(crate) const LATE_SHARE: f64 = 0.5;
+
 /// When a robot with a low level needs rest.
 #[derive(Debug, Clone, Copy)]
 pub struct LowLevel {
@@ -36,8 +40,8 @@ pub struct MissionModel {
     pub reach: f32,
     /// Share of its speed that a robot keeps when its group has no guide that can act.
     pub blind_speed: f64,
-    /// After so many control steps without coming nearer to its goal a robot gives up on it.
-    pub cut_off_steps: u64,
+    /// After so many control steps without coming nearer to its goal a robot is late: see `LATE_SHARE`.
+    pub late_steps: u64,
 }
 
 impl Deref for MissionModel {
@@ -60,7 +64,7 @@ impl MissionModel {
             loading_steps: steps(rules.loading_s),
             reach: rules.reach_m as f32,
             blind_speed: 1.0 - rules.blind_speed_loss,
-            cut_off_steps: (rules.cut_off_s / control_s).round() as u64,
+            late_steps: (LATE_SHARE * rules.cut_off_s / control_s).round() as u64,
             rules: *rules,
         }
     }

@@ -7,6 +7,7 @@ mod costs;
 mod debris;
 mod layout;
 mod mission;
+mod out_of_reach;
 mod places;
 mod rescuee;
 mod right_of_way;
@@ -19,12 +20,13 @@ mod timeline;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rne_core::{Need, TaskId};
+use teaming::{Need, TaskId};
 
 pub use area::TaskArea;
 pub use costs::CostModel;
 pub use debris::DebrisModel;
 pub use layout::{Layout, RobotStart};
+pub(crate) use mission::LATE_SHARE;
 pub use mission::{ErrandModel, LowLevel, MissionModel};
 pub use places::{RestSlots, rescuee_places};
 pub use rescuee::RescueeModel;
@@ -158,6 +160,11 @@ impl Model {
         self.dt_s
     }
 
+    /// Time from one control step to the next, in seconds.
+    pub fn control_period_s(&self) -> f64 {
+        self.control_steps as f64 * self.dt_s
+    }
+
     /// Number of steps in this many seconds.
     pub(crate) fn steps_in(&self, seconds: f64) -> u64 {
         (seconds / self.dt_s).round() as u64
@@ -165,7 +172,7 @@ impl Model {
 
     /// Number of control steps in this many seconds.
     pub(crate) fn control_steps_in(&self, seconds: f64) -> u64 {
-        (seconds / (self.control_steps as f64 * self.dt_s)).round() as u64
+        (seconds / self.control_period_s()).round() as u64
     }
 
     /// Whether robots look around and choose their velocities in this step.

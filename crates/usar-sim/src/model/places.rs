@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
+use teaming::TaskId;
 
 use crate::geometry::vector;
 use crate::ids::RobotId;
@@ -12,8 +12,8 @@ use crate::scenario::{Happening, Point, RoleKind, Scenario, TaskFile};
 /// Free distance between two robots at a rest place, in metres, so that others can pass between them.
 const REST_GAP_M: f64 = 1.2;
 
-/// The robots' own slots at the rest places of the tasks. The slots of a rest place form a nearly square block
-/// round its centre, in order of ids.
+/// The robots' own slots at the rest places of the tasks. The slots of a rest place form a nearly square
+/// block round its centre, in order of ids.
 #[derive(Debug, Clone)]
 pub struct RestSlots {
     /// Centre of each task's rest place.

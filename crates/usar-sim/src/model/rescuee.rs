@@ -1,7 +1,7 @@
 //! The fixed properties of one rescuee.
 
 use parry2d::math::Vector;
-use rne_core::TaskId;
+use teaming::TaskId;
 
 use super::places::{rescuee_blocks, rescuee_places};
 use crate::ids::RescueeId;

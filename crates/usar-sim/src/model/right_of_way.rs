@@ -128,8 +128,9 @@ pub struct RetreatModel {
     /// A robot goes on as soon as its own route ahead is clear of the other robot's for this distance, in
     /// metres; `None` if the other robot has to pass the whole line of the retreat.
     pub goes_on_within: Option<f32>,
-    /// Whether an obstacle that a robot is too close to, near a corner, is left out of the search for a place.
-    /// The paper's rule does so: its published results were made that way. A place may then be in a wall.
+    /// Whether an obstacle that a robot is too close to, near a corner, is left out of the search for a
+    /// place. The paper's rule does so: its published results were made that way. A place may then be in a
+    /// wall.
     pub leaves_out_corners: bool,
     /// Width and height of the arena, in metres.
     pub arena: Vector,

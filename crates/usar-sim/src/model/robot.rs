@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rne_core::{RoleId, TaskId};
+use teaming::{RoleId, TaskId};
 
 use super::RobotStart;
 use super::places::RestSlots;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use parry2d::math::Vector;
-use rne_core::{Task, TaskId};
+use teaming::{Task, TaskId};
 
 use super::TaskArea;
 use super::rescuee::RescueeModel;

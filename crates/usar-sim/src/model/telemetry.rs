@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use parry2d::math::Vector;
 use rand::RngExt;
-use rne_core::{Expected, NeedId};
 use serde::{Deserialize, Serialize};
+use teaming::{Expected, NeedId};
 
 use super::{Layout, RobotModel};
 use crate::geometry::{Outline, vector};

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rne_core::TaskId;
+use teaming::TaskId;
 
 use super::Layout;
 use super::places::rescuee_blocks;

@@ -2,6 +2,7 @@
 
 mod trail;
 mod traveller;
+mod way_out;
 
 use parry2d::math::Vector;
 use rayon::prelude::*;
@@ -15,6 +16,7 @@ use crate::robot::{Robot, STANDING_MPS};
 use trail::Trail;
 use traveller::{Attempt, PROGRESS_M};
 pub use traveller::{Goal, Traveller};
+use way_out::way_out;
 
 /// A robot that has come no nearer to its goal for this long, in seconds, plans a detour round the robots
 /// that stand in its way. After four times as long it plans without a detour again, and so on in turn: robots
@@ -160,7 +162,8 @@ where
                 route.advance(robot.position);
             }
             traveller.note_progress(robot.position);
-            let wayfinder = Wayfinder { outlook: self, robot, goal, belief: (self.belief_of)(robot.id) };
+            let (belief, trail) = ((self.belief_of)(robot.id), trail.points());
+            let wayfinder = Wayfinder { outlook: self, robot, goal, belief, trail };
             wayfinder.keep_on_route(traveller, detour_steps);
         }
     }
@@ -172,6 +175,8 @@ struct Wayfinder<'w, 'o, B, S> {
     robot: &'o Robot,
     goal: Goal,
     belief: &'o Belief,
+    /// Places that it passed, the latest last.
+    trail: &'w [Vector],
 }
 
 impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
@@ -204,7 +209,9 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
         let is_detour = attempt == Some(Attempt::Detour);
         let in_the_way = if is_detour { self.standing_near() } else { Vec::new() };
         let query = Query { in_the_way: &in_the_way, ..self.query() };
-        let route = find_route(&outlook.model.planner, &query);
+        let planner = &outlook.model.planner;
+        let way_out = || if robot.is_aerial() { None } else { way_out(planner, &query, self.trail) };
+        let route = find_route(planner, &query).or_else(way_out);
         if is_detour && !traveller.is_as_near(route.as_ref(), self.goal) {
             return;
         }

@@ -122,30 +122,13 @@ impl Planner {
         Some(best)
     }
 
-    /// The first of these places that a ground robot of this radius cannot reach among these outlines,
-    /// neither from `from` nor from a place before it.
-    pub(crate) fn first_unreachable<'p, T>(
-        &self,
-        radius: f32,
-        outlines: &[Outline],
-        from: Vector,
-        places: &'p [(T, Vector)],
-    ) -> Option<&'p (T, Vector)> {
+    /// The ways of ground robots of this radius among these outlines.
+    pub(crate) fn ways(&self, radius: f32, outlines: &[Outline]) -> Ways {
         let offset = self.ground_offset(radius);
         let obstacle =
             |(outline, number)| KnownObstacle::new(ObstacleKey::Debris(number), outline, offset, 0.0);
-        let known: ObstacleMap = outlines.iter().zip(0..).map(obstacle).collect();
-        let (arena, known, always) = (self.arena, Some(&known), Vec::new());
-        let search = Search { arena, offset, known, always };
-        let mut reached = search.free_point(from);
-        places.iter().find(|(_, place)| {
-            let place = search.free_point(*place);
-            let is_reached = [Wanted::Any, Wanted::Shortest]
-                .into_iter()
-                .any(|wanted| search.way([reached, place], wanted).is_some());
-            reached = if is_reached { place } else { reached };
-            !is_reached
-        })
+        let known = outlines.iter().zip(0..).map(obstacle).collect();
+        Ways { arena: self.arena, radius, offset, known }
     }
 
     /// Length of a route plus the price of its exposure, in metres.
@@ -170,5 +153,43 @@ impl Planner {
         let way = search.way([from, search.free_point(query.to)], Wanted::Shortest)?;
         let start = (from != query.from).then_some(from);
         Some(Route::new(start.into_iter().chain(way).collect()))
+    }
+}
+
+/// The ways of ground robots of one radius among outlines that stay.
+pub(crate) struct Ways {
+    arena: Vector,
+    /// The radius, in metres.
+    pub(crate) radius: f32,
+    offset: f32,
+    known: ObstacleMap,
+}
+
+impl Ways {
+    fn search(&self) -> Search<'_> {
+        Search { arena: self.arena, offset: self.offset, known: Some(&self.known), always: Vec::new() }
+    }
+
+    /// Distance of a place from the free point nearest to it, in metres.
+    pub(crate) fn off_m(&self, place: Vector) -> f32 {
+        (self.search().free_point(place) - place).length()
+    }
+
+    /// The first of these places that cannot be reached, neither from `from` nor from a place before it.
+    pub(crate) fn first_unreachable<'p, T>(
+        &self,
+        from: Vector,
+        places: &'p [(T, Vector)],
+    ) -> Option<&'p (T, Vector)> {
+        let search = self.search();
+        let mut reached = search.free_point(from);
+        places.iter().find(|(_, place)| {
+            let place = search.free_point(*place);
+            let is_reached = [Wanted::Any, Wanted::Shortest]
+                .into_iter()
+                .any(|wanted| search.way([reached, place], wanted).is_some());
+            reached = if is_reached { place } else { reached };
+            !is_reached
+        })
     }
 }

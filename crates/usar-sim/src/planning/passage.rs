@@ -15,8 +15,8 @@ const STRETCH_M: f32 = 8.0;
 /// A route is examined when less than this of it is examined ahead, in metres, and then for twice as far.
 const AHEAD_M: f32 = 10.0;
 
-/// A route is not left half examined within this distance of a passage, in metres: what follows may be part of
-/// the passage, or a bay beside it.
+/// A route is not left half examined within this distance of a passage, in metres: what follows may be part
+/// of the passage, or a bay beside it.
 const BEYOND_M: f32 = 3.0;
 
 /// Room that two robots side by side need beyond their diameters, in metres.

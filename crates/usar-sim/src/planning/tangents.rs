@@ -245,8 +245,8 @@ impl Search<'_, '_> {
 }
 
 impl Turn {
-    /// Whether a taut way may lead to a point at this offset from the bend, or to one within `range` metres of
-    /// it.
+    /// Whether a taut way may lead to a point at this offset from the bend, or to one within `range` metres
+    /// of it.
     fn leads_to(&self, offset: Vector, range: f32) -> bool {
         let aside = [self.between[0].perp_dot(offset), offset.perp_dot(self.between[1])];
         let aside = if self.bend.is_left { aside } else { aside.map(|aside| -aside) };

@@ -2,8 +2,8 @@
 //! and explains them all, except that a robot sees rescuees as far as debris; a test compares the two. There
 //! is no default for the team, the arena, the duration and the tasks of a mission.
 
-use rne_core::GroupSizes;
 use rne_core::hierarchy::NeedLevel;
+use teaming::GroupSizes;
 
 use super::file::{
     BeliefSharing, CostUnit, Costs, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure,

@@ -289,16 +289,16 @@ impl Scenario {
         !self.draws.is_empty() || !self.scatter.is_empty() || self.tasks.iter().any(samples)
     }
 
-    /// The scenario of one trial, in the steps of its fidelity. Each distribution is replaced by a value drawn
+    /// The scenario of one trial. Each distribution is replaced by a value drawn
     /// from the stream of its path. If the values do not fit together, all of them are drawn again.
     ///
     /// # Errors
     /// The values never fit together.
     pub fn of_trial(&self, seed: u64) -> Result<Self, LayoutError> {
         if self.draws.is_empty() {
-            return Ok(self.clone().in_its_steps());
+            return Ok(self.clone());
         }
-        self.0.of_trial(seed).map(Self::in_its_steps).map_err(|problems| LayoutError::NeverFits {
+        self.0.of_trial(seed).map_err(|problems| LayoutError::NeverFits {
             tries: problems.len() as u32,
             problem: problems.last().map(ToString::to_string).unwrap_or_default(),
         })

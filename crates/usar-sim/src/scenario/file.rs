@@ -14,9 +14,9 @@ pub use super::debris::{DebrisFile, DebrisShape, Movable, ZoneFile};
 pub use super::deceit::{Channel, Deceit, Lie, Mates, Who};
 pub use super::distribution::{Amount, Distribution};
 pub use super::draws::Draws;
-pub use super::fidelity::Fidelity;
 pub use super::rules::*;
 pub use super::scatter::{Placement, Scatter, Scattered};
+pub use super::steps::Fidelity;
 pub use super::telemetry::*;
 pub use super::timeline::{Happening, Moment};
 use super::words::Words;
@@ -48,9 +48,10 @@ pub struct ScenarioFile {
     /// steps, at least one; a team in which a robot would go farther than 0.25 m in it does so more often.
     #[serde(default = "super::defaults::control_period_s")]
     pub control_period_s: f64,
-    /// How finely a trial is simulated: as written, or in longer steps at the same costs.
-    #[serde(default, skip_serializing_if = "Fidelity::is_as_written")]
-    pub fidelity: Fidelity,
+    /// Of older files: without effect if `AsWritten`, and refused if `Coarse`.
+    #[serde(default, skip_serializing)]
+    #[schemars(skip)]
+    pub fidelity: Option<Fidelity>,
     /// Width and height of the walled arena, in metres.
     pub arena_m: Point,
     /// The team, row by row: ids are given in this order, from 0. Each robot's place in its row is its home.

@@ -11,7 +11,6 @@ mod draws;
 mod errands;
 mod error;
 mod feasibility;
-mod fidelity;
 mod file;
 mod homes;
 mod named;
@@ -23,6 +22,7 @@ mod rules;
 mod scatter;
 mod schema;
 mod set;
+mod steps;
 mod telemetry;
 mod timeline;
 mod validate;
@@ -32,10 +32,10 @@ mod words;
 use std::ops::Deref;
 use std::path::Path;
 
-use rne_core::question::hardest_first;
-use rne_core::{RoleId, TaskId};
 use ron_tree::Node;
 use ron_tree::file::MAX_TEXT_BYTES;
+use teaming::question::hardest_first;
+use teaming::{RoleId, TaskId};
 
 pub use carried::{CARRIED, beside, carry, is_file};
 pub use checker::{NOT_MISTAKEN, is_mistaken};
@@ -178,7 +178,7 @@ impl Scenario {
 
     /// Number of simulation steps in a trial.
     pub fn steps(&self) -> u64 {
-        (self.duration_s / self.step_s()).round() as u64
+        (self.duration_s / self.dt_s).round() as u64
     }
 
     /// Number of robots.

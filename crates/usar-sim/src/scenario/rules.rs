@@ -1,9 +1,9 @@
 //! The rules of a scenario as they are written: costs, the mission, planning and right of way.
 
-use rne_core::GroupSizes;
 use ron_tree::limits::Limit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use teaming::GroupSizes;
 
 use super::checker::Checker;
 use super::file::ScenarioFile;
@@ -193,7 +193,9 @@ pub struct MissionRules {
     /// Factor on speed, sensing and observing range at health 0 %; it rises linearly to 1 at 100 %.
     pub health_floor: f64,
     /// A robot that comes no nearer to its home, its rest place or its work for this long, in seconds, gives
-    /// up on the place: the team does not wait for it. A detour adds the time that it takes.
+    /// up on the place: the team does not wait for it. A detour adds the time that it takes, and a robot
+    /// slower than 1 m/s takes in proportion longer. Whenever a robot for which it waits gets on, the second
+    /// half of the time begins anew.
     pub cut_off_s: f64,
 }
 

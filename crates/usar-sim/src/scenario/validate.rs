@@ -157,6 +157,9 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
     }
     check.number("duration_s", file.duration_s, limits::DURATION_S);
     check.number("dt_s", file.dt_s, limits::DT_S);
+    if file.fidelity == Some(Fidelity::Coarse) {
+        check.fail("fidelity", "must be left out: longer steps are a larger dt_s", "Coarse");
+    }
     check.number("control_period_s", file.control_period_s, limits::CONTROL_PERIOD_S);
     check.number("arena_m[0]", file.arena_m[0], limits::ARENA_M);
     check.number("arena_m[1]", file.arena_m[1], limits::ARENA_M);
@@ -258,17 +261,16 @@ fn role(check: &mut Checker, field: &str, spec: &RoleFile, file: &ScenarioFile) 
     for (name, value) in &spec.constants {
         check.number(format!("{field}.constants.{name:?}"), *value, limits::CONSTANT);
     }
-    let (dt, step_m) = (file.step_s(), spec.speed_mps * file.step_s());
-    let step = if file.fidelity == Fidelity::Coarse { "the step of a coarse trial" } else { "dt_s" };
+    let (dt, step_m) = (file.dt_s, spec.speed_mps * file.dt_s);
     if step_m > spec.radius_m + ROUNDING_M {
         let rule = format!(
-            "times {step} ({dt} s) must be at most radius_m ({} m), or contacts are missed",
+            "times dt_s ({dt} s) must be at most radius_m ({} m), or contacts are missed",
             spec.radius_m
         );
         check.fail(format!("{field}.speed_mps"), rule, spec.speed_mps);
     } else if spec.kind == RoleKind::Ground && step_m > PUSHING_STEP_M + ROUNDING_M && file.can_be_pushed() {
         let rule = format!(
-            "times {step} ({dt} s) must be at most {PUSHING_STEP_M} m where debris can be pushed, or it is \
+            "times dt_s ({dt} s) must be at most {PUSHING_STEP_M} m where debris can be pushed, or it is \
              pushed into robots"
         );
         check.fail(format!("{field}.speed_mps"), rule, spec.speed_mps);

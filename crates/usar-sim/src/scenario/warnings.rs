@@ -6,8 +6,9 @@ use ron_tree::Node;
 use super::Scenario;
 use super::defaults::control_period_s;
 use super::error::Problem;
-use super::fidelity::{CONTROL_WAY_M, USUAL_STEP_S};
 use super::file::{MissionRules, PlanningRules, RoleFile, RoleKind};
+use super::steps::{CONTROL_WAY_M, USUAL_STEP_S};
+use super::telemetry::ReportRules;
 use super::timeline::{Happening, Moment};
 
 /// A value is odd if it is larger or smaller than the default by this factor.
@@ -46,6 +47,16 @@ impl Scenario {
         self.again(&mut warnings);
         self.paid_by_the_step(&mut warnings);
         self.decides_at_other_times(&mut warnings);
+        self.heard_too_late(&mut warnings);
+        if self.fidelity.is_some() {
+            warnings.push(Problem {
+                field: "fidelity".to_owned(),
+                rule: "has no effect any more".to_owned(),
+                found: "AsWritten".to_owned(),
+                hint: "all trials are simulated in steps of dt_s: leave it out".to_owned(),
+                ..Problem::default()
+            });
+        }
         for problem in &mut warnings {
             problem.line = tree.as_ref().and_then(|tree| tree.line(&problem.field));
         }
@@ -67,8 +78,7 @@ impl Scenario {
                     found: rate.to_string(),
                     hint: format!(
                         "in a second this is {times:.3} times as much as with steps of {USUAL_STEP_S} s; \
-                         per_second does not depend on dt_s, and `fidelity: Coarse` makes longer steps at the same \
-                         costs"
+                         per_second does not depend on dt_s"
                     ),
                     ..Problem::default()
                 });
@@ -78,7 +88,7 @@ impl Scenario {
 
     /// A given control period that robots do not keep to.
     fn decides_at_other_times(&self, warnings: &mut Vec<Problem>) {
-        let (given, step_s) = (self.control_period_s, self.step_s());
+        let (given, step_s) = (self.control_period_s, self.dt_s);
         let kept = self.control_steps() as f64 * step_s;
         if [control_period_s(), kept].iter().all(|usual| (given - usual).abs() > 1e-9) {
             warnings.push(Problem {
@@ -91,6 +101,27 @@ impl Scenario {
                 ),
                 ..Problem::default()
             });
+        }
+    }
+
+    /// A medium over which messages are heard after the trial, or ever later.
+    fn heard_too_late(&self, warnings: &mut Vec<Problem>) {
+        let Some(medium) = &self.medium else { return };
+        let mut say = |field: &str, rule: String, found: f64, hint: &str| {
+            let (field, found, hint) = (field.to_owned(), found.to_string(), hint.to_owned());
+            warnings.push(Problem { field, rule, found, hint, ..Problem::default() });
+        };
+        if medium.delay_s >= self.duration_s {
+            let rule = format!("is as long as the trial or longer: it ends after {} s", self.duration_s);
+            say("medium.delay_s", rule, medium.delay_s, "no message is ever heard");
+        }
+        let Some(kbps) = medium.kbps else { return };
+        let every_s = self.reports.as_ref().map_or_else(|| ReportRules::default().every_s, |it| it.every_s);
+        let on_air_s = (f64::from(medium.bytes) * 8.0 / kbps + medium.overhead_ms) / 1000.0;
+        let share = f64::from(self.robots()) * on_air_s / every_s;
+        if share > 1.0 {
+            let rule = format!("is {share:.1} times too slow for the reports of all robots");
+            say("medium.kbps", rule, kbps, "messages wait for one another, and are heard ever later");
         }
     }
 

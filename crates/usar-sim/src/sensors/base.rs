@@ -1,6 +1,6 @@
 //! What the base knows of the tasks, as a dispatcher does: which are open, and how many rescuees wait there.
 
-use rne_core::TaskId;
+use teaming::TaskId;
 
 use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};

@@ -1,8 +1,8 @@
 //! One trial: a scenario and a seed in, a record out, and one interface for decisions.
 //!
 //! [`Simulation::advance`] does a step, or returns the [question](Advance::Asks) how the team is to be
-//! grouped. [`Simulation::assign`] takes the answer. Policies, programs and people all are [sessions](Session)
-//! at this door.
+//! grouped. [`Simulation::assign`] takes the answer. Policies, programs and people all are
+//! [sessions](Session) at this door.
 
 mod charge;
 mod checkpoint;
@@ -18,7 +18,7 @@ mod view;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rne_core::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, TrueLevels};
+use teaming::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, TrueLevels};
 use thiserror::Error;
 
 use crate::event::Event;
@@ -116,7 +116,8 @@ impl Simulation {
         self
     }
 
-    /// The same trial with the engine on in every step, for tests and measurements of steps in which it rests.
+    /// The same trial with the engine on in every step, for tests and measurements of steps in which it
+    /// rests.
     #[must_use]
     pub fn with_engine_always_on(mut self) -> Self {
         self.state.world.physics.keep_engine_on();
@@ -139,9 +140,10 @@ impl Simulation {
         self
     }
 
-    /// From now on, robots wish these velocities, by id, in metres a second and up to their top speeds, instead
-    /// of those along their routes (`None`). The right of way applies to them as the scenario says. Wishes are
-    /// no part of the state: a trial that resumes from a checkpoint or a snapshot goes along routes.
+    /// From now on, robots wish these velocities, by id, in metres a second and up to their top speeds,
+    /// instead of those along their routes (`None`). The right of way applies to them as the scenario says.
+    /// Wishes are no part of the state: a trial that resumes from a checkpoint or a snapshot goes along
+    /// routes.
     pub fn steer(&mut self, velocities: Option<Vec<Vector>>) {
         self.scratch.steering = velocities;
     }

@@ -1,6 +1,6 @@
 //! The stage of a step in which robots do what they came for: they load, deliver and rest.
 
-use rne_core::question::MAX_TASKS;
+use teaming::question::MAX_TASKS;
 
 use super::State;
 use crate::model::Model;

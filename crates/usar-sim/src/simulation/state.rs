@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use parry2d::math::Vector;
 use rayon::prelude::*;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use super::charge::{bearable, last_event, spend};
 use super::faults::Faults;
@@ -140,14 +140,24 @@ impl State {
 
     /// The mission, and the scene in which it decides.
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
-        let Self { mission, beliefs, sent, navigator, log, step, timeline, telemetry, .. } = self;
+        let Self { mission, beliefs, sent, navigator, resolver, log, step, timeline, telemetry, .. } = self;
         let telemetry = telemetry.as_deref_mut();
         let awaits_event = timeline.is_to_come(model);
         let seen = || step.saturating_sub(model.steps_in(SEEN_AFTER_S));
         let awaits_opening = !timeline.is_empty() && timeline.opens_after(seen(), model);
-        let step = *step;
-        let scene =
-            Scene { model, beliefs, sent, navigator, log, telemetry, step, awaits_event, awaits_opening };
+        let (step, directives) = (*step, resolver.directives());
+        let scene = Scene {
+            model,
+            beliefs,
+            sent,
+            navigator,
+            directives,
+            log,
+            telemetry,
+            step,
+            awaits_event,
+            awaits_opening,
+        };
         (mission, scene)
     }
 

@@ -1,7 +1,7 @@
 //! The timeline of a trial: each event of the scenario happens at the beginning of its step.
 
 use parry2d::query::distance;
-use rne_core::TaskId;
+use teaming::TaskId;
 
 use super::State;
 use super::charge::{bearable, last_event, spend};

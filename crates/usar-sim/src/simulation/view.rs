@@ -1,6 +1,6 @@
 //! What can be seen of a trial from outside.
 
-use rne_core::{Question, TaskId};
+use teaming::{Question, TaskId};
 
 use super::{Simulation, State};
 use crate::belief::{Belief, Beliefs};

@@ -18,8 +18,8 @@ pub struct Reading {
     pub time_s: f64,
 }
 
-/// What a gauge shows of a level, in percent; `None` if the reading fails. Every reading has draws of its own,
-/// whether they are used or not.
+/// What a gauge shows of a level, in percent; `None` if the reading fails. Every reading has draws of its
+/// own, whether they are used or not.
 pub fn read(gauge: &Gauge, level: f64, reading: Reading) -> Option<f64> {
     let Reading { seed, of, step, time_s } = reading;
     let mut draws = stream_at(seed, Purpose::Gauge, of, step);

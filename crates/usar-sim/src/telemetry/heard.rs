@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use rne_core::evidence::is_named;
-use rne_core::{Body, Evidence, Expected, Extent, LevelReport, Rating, RobotRound, RoundOutcome, TrueLevels};
 use serde::{Deserialize, Serialize};
+use teaming::evidence::is_named;
+use teaming::{Body, Evidence, Expected, Extent, LevelReport, Rating, RobotRound, RoundOutcome, TrueLevels};
 
 use crate::ids::RobotId;
 use crate::model::Model;

@@ -1,6 +1,6 @@
 //! What the base knows of robots without a report: their bodies, and what it expects of their levels.
 
-use rne_core::{Body, Evidence, Member, TrueLevels};
+use teaming::{Body, Evidence, Member, TrueLevels};
 
 use crate::model::{Model, RobotModel};
 use crate::robot::Robot;

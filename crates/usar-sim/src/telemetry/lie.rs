@@ -1,8 +1,8 @@
 //! Lies: what a robot says in the place of what it read, or of what it saw.
 
 use rand::RngExt;
-use rne_core::Rating;
 use serde::{Deserialize, Serialize};
+use teaming::Rating;
 
 use crate::ids::RobotId;
 use crate::model::{LieModel, TelemetryModel};

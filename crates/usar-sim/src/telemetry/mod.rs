@@ -14,8 +14,9 @@ mod radio;
 mod speech;
 mod witness;
 
-use rne_core::{Evidence, LevelReport, Member, NeedVector, Rating, RoundOutcome, TrueLevels};
+use rne_core::NeedVector;
 use serde::{Deserialize, Serialize};
+use teaming::{Evidence, LevelReport, Member, Rating, RoundOutcome, TrueLevels};
 
 pub use channel::{Channel, Ends, Link};
 pub use heard::Heard;

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use parry2d::math::Vector;
 use rand::RngExt;
-use rne_core::TaskId;
 use serde::{Deserialize, Serialize};
+use teaming::TaskId;
 
 use super::channel::{Ends, Sending};
 use super::{Now, Telemetry};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use rne_core::{LevelReport, NeedId};
+use teaming::{LevelReport, NeedId};
 
 use super::gauge::{Reading, read};
 use super::lie::Topic;

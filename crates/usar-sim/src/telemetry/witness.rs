@@ -1,7 +1,7 @@
 //! Witnesses: how fast robots see their group-mates go.
 
-use rne_core::Rating;
 use serde::{Deserialize, Serialize};
+use teaming::Rating;
 
 use crate::ids::RobotId;
 use crate::model::TelemetryModel;

@@ -2,12 +2,12 @@
 
 use parry2d::math::Vector;
 use usar_sim::event::{CutOffCause, Event};
-use usar_sim::record::Status;
+use usar_sim::record::{Status, TrialRecord};
 
 use crate::{scenario, trial};
 
-/// The gate through which robot 0 went out closes behind it. In the other door stands a keeper that has nothing
-/// to do and, without a rule of right of way, makes no room: robot 0 pushes against it for good.
+/// The gate through which robot 0 went out closes behind it. In the other door stands a keeper that has
+/// nothing to do and, without a rule of right of way, makes no room: robot 0 pushes against it for good.
 const KEEPER: &str = r#"duration_s: 300.0, arena_m: (40.0, 40.0), conflicts: (resolver: None),
     roles: [(name: "runner", observing_m: 1.0, resources: 10), (name: "seer", observing_m: 3.0),
             (name: "keeper", mass_kg: 500.0)],
@@ -67,10 +67,54 @@ fn an_errand_is_given_up_by_a_robot_that_comes_no_nearer() {
     let record = trial(&scenario(keeper), |_, _, _| {});
     let counts = record.counts;
     assert_eq!((record.status, record.stalled), (Status::ErrandsOver, 0), "it went on to its second place");
-    assert_eq!((counts.errands_done, counts.unreachable), (1, 1));
+    assert_eq!((counts.errands_done, counts.unreachable), (1, 0), "there is a way, but it was not free");
     let [cut_off] = record.cut_off[..] else { panic!("{:?}", record.cut_off) };
     assert_eq!((cut_off.place, cut_off.cause), ([17.0, 5.0], CutOffCause::NoProgress));
     assert!((60.0..80.0).contains(&cut_off.first_s), "{} s", cut_off.first_s);
+}
+
+/// So many robots, in rows of eight, change rooms through one door of a single lane.
+fn crowd(robots: u32, fields: &str) -> TrialRecord {
+    let place = |robot: u32, x: f64| {
+        let [column, row] = [robot % 8, robot / 8].map(f64::from);
+        format!("({:.1}, {:.1})", x + 0.8 * column, 1.0 + 0.8 * row)
+    };
+    let all = |one: &dyn Fn(u32) -> String| (0..robots).map(one).collect::<Vec<_>>().join(", ");
+    let stand = |robot| format!(r#"(role: "robot", count: 1, center: {}, width_m: 0.0)"#, place(robot, 1.0));
+    let go = |robot| format!("(robot: {robot}, to: [{}])", place(robot, 9.4));
+    trial(
+        &scenario(&format!(
+            "arena_m: (16.0, 12.0), team: [{}], errands: [{}], {fields},
+            walls: [(from: (8.0, 0.0), to: (8.0, 12.0), thickness_m: 0.2,
+                     doors: [(at_m: 6.0, width_m: 1.0)])]",
+            all(&stand),
+            all(&go)
+        )),
+        |_, _, _| {},
+    )
+}
+
+#[test]
+fn a_robot_in_a_queue_that_gets_on_gives_up_nothing() {
+    let record = crowd(
+        64,
+        r#"duration_s: 400.0, mission: (cut_off_s: 15.0),
+        roles: [(name: "robot", radius_m: 0.25, speed_mps: 1.0, sensing_m: 100.0)]"#,
+    );
+    let longest = record.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max);
+    assert!(longest > 20.0, "robots wait for longer than `cut_off_s`: {longest} s");
+    assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 64));
+    assert_eq!((record.counts.unreachable, record.cut_off.len()), (0, 0));
+}
+
+#[test]
+fn slow_robots_have_in_proportion_longer() {
+    let record = crowd(
+        8,
+        r#"duration_s: 1500.0, mission: (cut_off_s: 10.0),
+        roles: [(name: "robot", radius_m: 0.25, speed_mps: 0.05, sensing_m: 100.0)]"#,
+    );
+    assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 8));
 }
 
 /// The door to all places opens late.
@@ -153,4 +197,26 @@ fn a_robot_that_can_rest_nowhere_goes_home_and_does_not_give_up_again_and_again(
     assert_eq!(record.counts.unreachable, 2, "each rest place once");
     assert_eq!(record.rounds.iter().map(|round| round.round).max(), Some(1));
     assert!(record.robots[0].final_energy > 10.0);
+}
+
+/// A robot plans its way east from `first`, through a gap of 1 m between two pieces of debris at x = 10, and
+/// back.
+/// The gap has room for its body, but not for a route planned by one that sees the debris.
+fn through_a_gap(first: f64) -> TrialRecord {
+    let gap = format!(
+        r#"duration_s: 120.0, arena_m: (20.0, 10.0),
+        roles: [(name: "runner")],
+        team: [(role: "runner", count: 1, center: (3.0, 5.0), width_m: 0.0)],
+        errands: [(robot: 0, to: [({first:?}, 5.0), (16.0, 5.0), (3.0, 5.0)])],
+        debris: [(shape: Box(0.3, 4.5), at: (10.0, 2.25)), (shape: Box(0.3, 4.5), at: (10.0, 7.75))]"#
+    );
+    trial(&scenario(&gap), |_, _, _| {})
+}
+
+#[test]
+fn a_robot_comes_back_out_of_where_it_came_in_although_no_route_leads_there() {
+    let seen_late = through_a_gap(4.0).counts;
+    assert_eq!((seen_late.errands_done, seen_late.unreachable), (3, 0));
+    let seen_in_time = through_a_gap(8.0).counts;
+    assert_eq!((seen_in_time.errands_done, seen_in_time.unreachable), (2, 1), "it never went in");
 }

@@ -1,5 +1,6 @@
 //! Each robot takes routes that are wide enough for it.
 
+use usar_sim::model::Layout;
 use usar_sim::record::Status;
 use usar_sim::simulation::Simulation;
 
@@ -36,6 +37,46 @@ fn a_small_robot_passes_the_small_gap_and_a_large_one_gives_up() {
     assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 1));
     assert_eq!(record.counts.unreachable, 1);
     assert!(record.robots[0].distance_m < 12.0 && record.robots[1].distance_m < 12.0);
+}
+
+/// What robots cannot reach, each by its field.
+fn out_of_reach(fields: &str) -> Vec<String> {
+    let scenario = scenario(fields);
+    let problems = Layout::sample(&scenario, 1).unwrap().out_of_reach(&scenario);
+    problems.into_iter().map(|problem| problem.field).collect()
+}
+
+#[test]
+fn places_of_errands_without_a_way_that_is_wide_enough_are_told() {
+    assert!(out_of_reach(&doorway(true)).is_empty());
+    assert_eq!(out_of_reach(&doorway(false)), ["errands[1].to[0]"]);
+    let lane = |y: f64| {
+        format!(
+            r#"duration_s: 100.0, arena_m: (12.0, 4.0), roles: [(name: "robot", radius_m: 0.25)],
+            team: [(role: "robot", count: 1, center: (2.0, 2.0), width_m: 0.0)],
+            errands: [(robot: 0, to: [(4.0, 2.0), (9.0, 2.0)])],
+            walls: [(from: (6.0, 1.5), to: (12.0, 1.5), thickness_m: 0.2),
+                    (from: (6.0, {y:?}), to: (12.0, {y:?}), thickness_m: 0.2)]"#
+        )
+    };
+    assert_eq!(out_of_reach(&lane(2.4)), ["errands[0].to[1]"], "0.7 m; with clearance the robot takes 0.8 m");
+    assert!(out_of_reach(&lane(2.6)).is_empty());
+}
+
+#[test]
+fn rescuees_that_are_all_inside_debris_are_told() {
+    let under = |size_m: f64| {
+        format!(
+            r#"duration_s: 100.0, arena_m: (30.0, 20.0), roles: [(name: "robot", capacity: 2, resources: 5)],
+            team: [(role: "robot", count: 2, center: (4.0, 4.0), width_m: 3.0)],
+            tasks: [(name: "far", difficulty: 1, center: (20.0, 10.0), size_m: (2.0, 2.0), grid: (2, 2),
+                     rest: (5.0, 15.0))],
+            debris: [(shape: Box({size_m:?}, 7.0), at: (20.0, 10.0),
+                      movable: (mass_kg: 500.0, friction: 0.5))]"#
+        )
+    };
+    assert_eq!(out_of_reach(&under(7.0)), ["tasks[0].grid"]);
+    assert!(out_of_reach(&under(2.0)).is_empty(), "robots reach them from the sides");
 }
 
 #[test]

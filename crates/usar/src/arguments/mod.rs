@@ -8,14 +8,15 @@ mod progress;
 mod selection;
 mod trial;
 
-pub(crate) use common::{
-    CaseArgument, JsonArgument, MeasureArgument, PoliciesArgument, ReplaceArgument, SetArguments,
-    ShownArguments, WideArgument, count, format_of, limit, numbers, one_seed, parse_policy, seconds, seed,
-    share,
+pub use common::{
+    CaseArgument, MeasureArgument, ProgramsArgument, ReplaceArgument, SetArguments, ShownArguments, count,
+    one_seed, parse_policy, seed, share,
 };
+pub(crate) use common::{JsonArgument, PoliciesArgument, WideArgument, format_of, limit, numbers, seconds};
 pub(crate) use family::{ComparisonArguments, FamilyArguments};
 pub(crate) use parameters::ParameterArguments;
-pub(crate) use picture::{LookArguments, PictureArguments, PictureFile, width};
-pub(crate) use progress::{ProgressArguments, default_jobs, opened, progress_bar};
+pub(crate) use picture::{LookArguments, PictureFile, width};
+pub use progress::{ProgressArguments, opened};
+pub(crate) use progress::{default_jobs, progress_bar};
 pub(crate) use selection::{Selection, WorldArgument};
 pub(crate) use trial::{Trial, TrialArguments};

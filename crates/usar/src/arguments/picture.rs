@@ -4,6 +4,7 @@ use pictures::{Look, Picture, Width};
 
 use super::ReplaceArgument;
 use crate::bad_value::BadValue;
+use crate::builds::check_kind;
 use crate::prelude::*;
 
 /// The size of pictures.
@@ -69,19 +70,27 @@ pub(crate) struct PictureFile {
 }
 
 impl PictureFile {
-    /// The file with this name, which must end as one of these kinds.
-    pub(crate) fn of(path: &Path, kinds: &[&str], replace: ReplaceArgument) -> Result<Self, Failure> {
+    /// The file that an option names, which must end as one of these kinds.
+    pub(crate) fn of(
+        flag: &str,
+        path: &Path,
+        kinds: &[&str],
+        replace: ReplaceArgument,
+    ) -> Result<Self, Failure> {
         let kind = path.extension().and_then(|ending| ending.to_str()).filter(|kind| kinds.contains(kind));
+        check_kind(flag, kind.unwrap_or_default())?;
         let write: fn(&Picture) -> Result<Vec<u8>, Failure> = match kind {
             Some("svg") => |picture| Ok(picture.svg().as_bytes().to_vec()),
+            #[cfg(feature = "pictures")]
             Some("png") => |picture| picture.png().map_err(Failure::input),
+            #[cfg(feature = "pictures")]
             Some("pdf") => |picture| picture.pdf().map_err(Failure::run),
             _ => {
                 let (kinds, path) = (kinds.join(" or ."), path.display());
-                refuse!("--out: must end with .{kinds}, found {path}");
+                refuse!("{flag}: must end with .{kinds}, found {path}");
             }
         };
-        Ok(Self { write, to: Destination::new("--out", path, replace.force)? })
+        Ok(Self { write, to: Destination::new(flag, path, replace.force)? })
     }
 
     /// Writes the picture.

@@ -16,48 +16,51 @@ use crate::prelude::*;
 
 /// Threads and progress.
 #[derive(Debug, Args)]
-pub(crate) struct ProgressArguments {
+pub struct ProgressArguments {
     /// Threads [default: one per core]
     #[arg(long, value_parser = count(1..=1024))]
     jobs: Option<u32>,
     /// No progress on stderr
     #[arg(long)]
-    pub(crate) quiet: bool,
+    pub quiet: bool,
 }
 
 impl ProgressArguments {
     /// The number of threads.
-    pub(crate) fn jobs(&self) -> usize {
+    pub fn jobs(&self) -> usize {
         self.jobs.map_or_else(default_jobs, |jobs| jobs as usize)
     }
 
     /// The limits of a run, with the longest time of a trial.
-    pub(crate) fn limits(&self, trial: Option<Duration>) -> Limits {
+    pub fn limits(&self, trial: Option<Duration>) -> Limits {
         Limits { jobs: self.jobs(), trial }
     }
 
     /// Prints a line on stderr, unless the command is to be quiet.
-    pub(crate) fn tell(&self, what: impl Display) {
+    pub fn tell(&self, what: impl Display) {
         if !self.quiet {
             tell(what);
         }
     }
 
     /// Tells how much an earlier run has left, if it has left anything.
-    pub(crate) fn tell_resumed(&self, there: usize, what: &str) {
+    pub fn tell_resumed(&self, there: usize, what: &str) {
         if there > 0 {
             self.tell(format_args!("{there} {what} are there already"));
         }
     }
 
     /// A bar for work that goes on until it is done or a signal stops it.
-    pub(crate) fn bar(&self, count: usize, of: &str) -> ProgressBar {
+    pub fn bar(&self, count: usize, of: &str) -> ProgressBar {
         stop_on_signals();
         progress_bar(count, of, self.jobs(), self.quiet)
     }
 
     /// Works on the threads of the command, with a bar.
-    pub(crate) fn work<T: Send>(
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn work<T: Send>(
         &self,
         count: usize,
         of: &str,
@@ -71,7 +74,10 @@ impl ProgressArguments {
     }
 
     /// Opens the folder of an experiment, runs the trials that it lacks and finishes it.
-    pub(crate) fn finished(&self, place: &Path, experiment: Experiment) -> Result<Folder, Failure> {
+    ///
+    /// # Errors
+    /// Those of [`opened`] and of [`Self::run_missing`].
+    pub fn finished(&self, place: &Path, experiment: Experiment) -> Result<Folder, Failure> {
         let mut folder = opened(place, experiment, Opening::default())?;
         self.run_missing(&mut folder, None, None)?;
         folder.finish(&STOP)?;
@@ -79,7 +85,10 @@ impl ProgressArguments {
     }
 
     /// Runs the trials that a folder lacks.
-    pub(crate) fn run_missing(
+    ///
+    /// # Errors
+    /// A trial, a policy or the disk fails, or a signal stops the run.
+    pub fn run_missing(
         &self,
         folder: &mut Folder,
         shard: Option<Shard>,
@@ -110,12 +119,15 @@ impl ProgressArguments {
 }
 
 /// Opens the folder of an experiment; what there is to note is told on stderr.
-pub(crate) fn opened(place: &Path, experiment: Experiment, opening: Opening) -> Result<Folder, Failure> {
+///
+/// # Errors
+/// The folder has other results, or the disk does not take it.
+pub fn opened(place: &Path, experiment: Experiment, opening: Opening) -> Result<Folder, Failure> {
     Folder::open(place, Arc::new(experiment), opening, &mut |note| tell(format_args!("note: {note}")))
 }
 
 /// One thread per core.
-pub(crate) fn default_jobs() -> usize {
+pub fn default_jobs() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
@@ -146,7 +158,7 @@ fn report_progress(bar: &ProgressBar, of: &str) {
 }
 
 /// Progress on stderr: a bar, or a line each minute if stderr is not a terminal.
-pub(crate) fn progress_bar(count: usize, of: &str, jobs: usize, quiet: bool) -> ProgressBar {
+pub fn progress_bar(count: usize, of: &str, jobs: usize, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }

@@ -6,8 +6,8 @@ use experiments::metric::task_names;
 use experiments::run::TrialKey;
 use experiments::sweep::disk::experiment_in;
 use recording::{Options, Recording};
-use rne_core::Session;
 use ron_tree::file::{read, read_start};
+use teaming::Session;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
@@ -28,7 +28,7 @@ pub(crate) struct TrialArguments {
     #[arg(long, value_parser = one_seed)]
     seed: Option<u64>,
     #[command(flatten)]
-    case: CaseArgument,
+    pub(crate) case: CaseArgument,
     #[command(flatten)]
     set: SetArguments,
     /// Simulate even if it takes very long: more bodies x steps than docs/limits.md has

@@ -10,7 +10,7 @@ use experiments::panic_message;
 use serde::Serialize;
 
 use crate::arguments::JsonArgument;
-use crate::input::{tell_doubts, tell_warnings_of_all};
+use crate::input::{tell_doubts, tell_out_of_reach, tell_warnings_of_all};
 use crate::library;
 use crate::prelude::*;
 
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     files: Vec<PathBuf>,
     /// Policy that decides, with its options in brackets [default: none, files are checked]
     #[arg(long, conflicts_with = "files")]
-    policy: Option<String>,
+    pub(super) policy: Option<String>,
     #[command(flatten)]
     json: JsonArgument,
 }
@@ -52,6 +52,15 @@ fn check(file: &Path, registry: &Registry) -> Result<String, Failure> {
     expectations(&experiment, file)?;
     tell_warnings_of_all(experiment.cases.iter().map(|case| &case.scenario), &experiment.given, file);
     tell_doubts(&experiment, file);
+    for policy in &experiment.policies {
+        if let Some(command) = policy.made().it.program() {
+            tell(format_args!(
+                "note: policy {} is a program, which was not started: {command}",
+                policy.label
+            ));
+        }
+    }
+    tell_out_of_reach(&experiment, file);
     experiment.with_trials(1)?.check_start(file)?;
     let cost = experiment.check_cost(false).err();
     Ok(cost.map_or_else(|| "ok".to_owned(), |cost| format!("ok, but expensive: {cost}")))
@@ -74,20 +83,19 @@ fn check_each(files: &[PathBuf], check: impl Fn(&Path) -> Result<String, Failure
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         if let Some(policy) = &self.policy {
-            return policy::check(policy, registry, self.json.json, out);
+            return policy::check(policy, registry, self.json.json);
         }
         let checked = check_each(&self.files, |file| check(file, registry));
         let problems: Vec<&str> = checked.iter().flat_map(|one| &one.problems).map(String::as_str).collect();
         if self.json.json {
-            print_json(&serde_json::json!({"files": checked}))?;
+            Report::json(&serde_json::json!({"files": checked}))?.print()?;
         } else {
-            for Checked { file, told, .. } in &checked {
-                told.iter().try_for_each(|told| writeln!(out, "{file}: {told}"))?;
-            }
+            let told = |Checked { file, told, .. }: &Checked| Some(format!("{file}: {}", told.as_ref()?));
+            Report::of(checked.iter().filter_map(told)).print()?;
         }
-        if problems.is_empty() { Ok(()) } else { Err(Failure::input(problems.join("\n"))) }
+        if problems.is_empty() { Ok(Report::default()) } else { Err(Failure::input(problems.join("\n"))) }
     }
 }
 

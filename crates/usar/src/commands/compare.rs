@@ -57,7 +57,7 @@ struct Compared<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let mut folder = read_sweep(&self.folder, registry)?;
         let doubts = doubts(&mut folder)?;
         let experiment = folder.experiment();
@@ -84,21 +84,22 @@ impl Arguments {
                 "effects": compared.effects,
                 "interactions": compared.interactions,
             });
-            return print_json(&output);
+            return Report::json(&output);
         }
-        compared.print_answer(out)?;
+        let mut out = Report::default();
+        compared.tell_answer(&mut out);
         if self.wide.is_wide() {
-            compared.print_wide(out)?;
+            compared.tell_wide(&mut out);
         } else {
-            compared.print_narrow(out)?;
+            compared.tell_narrow(&mut out);
         }
-        compared.print_notes(out)?;
-        doubts.iter().try_for_each(|doubt| writeln!(out, "{doubt}"))?;
-        if let Some(own) = own {
-            writeln!(out, "{own}")?;
-        }
-        let rules = Hosts::read(folder.path()).rules;
-        rules.iter().try_for_each(|rule| Ok(writeln!(out, "Pairs were added by a rule: {rule}")?))
+        compared.tell_notes(&mut out);
+        out.extend(doubts);
+        out.extend(own);
+        out.extend(
+            Hosts::read(folder.path()).rules.iter().map(|rule| format!("Pairs were added by a rule: {rule}")),
+        );
+        Ok(out)
     }
 }
 
@@ -108,93 +109,94 @@ impl Compared<'_> {
     }
 
     /// The answer, before any table: of the only case, or how many cases show what.
-    fn print_answer(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn tell_answer(&self, out: &mut Report) {
         let all: Vec<&Comparison> = self.comparisons.iter().collect();
         let said = if self.experiment.cases.len() == 1 { answer(&all) } else { answer_of_cases(&all) };
-        said.map_or(Ok(()), |said| Ok(writeln!(out, "{said}\n")?))
+        out.extend(said.map(|said| format!("{said}\n")));
     }
 
     /// Five columns a metric, or a table of cases.
-    fn print_narrow(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn tell_narrow(&self, out: &mut Report) {
         let has_cases = self.experiment.cases.len() > 1;
         for metric in self.asked.metrics.iter().map(|metric| &self.experiment.metrics[*metric].name) {
             let here: Vec<&Comparison> =
                 self.comparisons.iter().filter(|one| one.metric == *metric).collect();
             if here.is_empty() {
-                self.print_means(out, metric)?;
+                self.tell_means(out, metric);
             } else {
-                writeln!(out, "{metric}")?;
-                print_table(out, &if has_cases { cases_table(&here) } else { verdict_table(&here) })?;
+                out.titled(metric, if has_cases { cases_table(&here) } else { verdict_table(&here) });
             }
         }
         if has_cases && !self.comparisons.is_empty() {
-            writeln!(out, "*: shown to differ; =: equivalent within the margin; others are undecided.")?;
-            self.print_shown_changes(out)?;
+            out.say("*: shown to differ; =: equivalent within the margin; others are undecided.");
+            self.tell_shown_changes(out);
         }
-        Ok(())
     }
 
     /// The changes of differences that are shown, in sentences.
-    fn print_shown_changes(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn tell_shown_changes(&self, out: &mut Report) {
         let shown: Vec<&Interaction> = self.interactions.iter().filter(|one| one.is_found()).collect();
         let (count, all) = (shown.len(), self.interactions.len());
-        writeln!(out, "\nDifferences that are shown to change along an axis: {count} of {all} changes.")?;
-        shown.iter().take(MOST_SENTENCES).try_for_each(|one| writeln!(out, "{}", one.in_words))?;
+        out.say(format!("\nDifferences that are shown to change along an axis: {count} of {all} changes."));
+        out.extend(shown.iter().take(MOST_SENTENCES).map(|one| &one.in_words));
         if count > MOST_SENTENCES {
-            writeln!(out, "{} more: --wide.", count - MOST_SENTENCES)?;
+            out.say(format!("{} more: --wide.", count - MOST_SENTENCES));
         }
-        Ok(())
     }
 
     /// All columns, a sentence for each comparison, and all changes along axes.
-    fn print_wide(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn tell_wide(&self, out: &mut Report) {
         let cases = self.experiment.cases.iter().enumerate().filter(|_| !self.comparisons.is_empty());
         for (i, case) in cases {
             let place = self.experiment.describe(case);
             if !place.is_empty() {
-                writeln!(out, "{}", place.trim_end_matches(": "))?;
+                out.say(place.trim_end_matches(": "));
             }
-            print_table(out, &comparison_table(&self.of_case(i)))?;
+            out.show(comparison_table(&self.of_case(i)));
         }
-        self.comparisons.iter().try_for_each(|one| writeln!(out, "{}", one.in_words))?;
+        out.extend(self.comparisons.iter().map(|one| &one.in_words));
         if self.effects.is_empty() {
-            return Ok(());
+            return;
         }
         for metric in self.asked.metrics.iter().map(|metric| &self.experiment.metrics[*metric].name) {
-            writeln!(out)?;
-            self.print_means(out, metric)?;
-            self.print_differences(out, metric)?;
+            out.say("");
+            self.tell_means(out, metric);
+            self.tell_differences(out, metric);
         }
-        writeln!(out, "{CHANGES_NOTE}")?;
+        out.say(CHANGES_NOTE);
         let counts = || self.effects.iter().map(|one| one.n);
         let (least, most) = (counts().min().unwrap_or(0), counts().max().unwrap_or(0));
-        Ok(writeln!(out, "Pairs of each change: {least} to {most}")?)
+        out.say(format!("Pairs of each change: {least} to {most}"));
     }
 
     /// The effects of the axes on each policy's mean.
-    fn print_means(&self, out: &mut dyn Write, metric: &str) -> Result<(), Failure> {
+    fn tell_means(&self, out: &mut Report, metric: &str) {
         let effects: Vec<&Effect> = self.effects.iter().filter(|one| one.metric == metric).collect();
-        writeln!(out, "By how much each policy's mean changes, in percent of what it was: {metric}")?;
-        print_table(out, &effects_table(&effects))
+        out.titled(
+            format!("By how much each policy's mean changes, in percent of what it was: {metric}"),
+            effects_table(&effects),
+        );
     }
 
     /// The differences case by case, and their changes.
-    fn print_differences(&self, out: &mut dyn Write, metric: &str) -> Result<(), Failure> {
+    fn tell_differences(&self, out: &mut Report, metric: &str) {
         let here: Vec<&Comparison> = self.comparisons.iter().filter(|one| one.metric == metric).collect();
         if here.is_empty() {
-            return Ok(());
+            return;
         }
-        writeln!(out, "\nDifferences between policies, case by case: {metric}")?;
-        print_table(out, &differences_table(&here))?;
-        writeln!(out, "\nBy how much these differences change: {metric}")?;
+        out.titled(
+            format!("\nDifferences between policies, case by case: {metric}"),
+            differences_table(&here),
+        );
+        out.say(format!("\nBy how much these differences change: {metric}"));
         let changes: Vec<&Interaction> =
             self.interactions.iter().filter(|one| one.metric == metric).collect();
-        print_table(out, &interactions_table(&changes))
+        out.show(interactions_table(&changes));
     }
 
     /// What everything stands on, and what limits it.
-    fn print_notes(&self, out: &mut dyn Write) -> Result<(), Failure> {
-        writeln!(out)?;
+    fn tell_notes(&self, out: &mut Report) {
+        out.say("");
         let notes = [
             limit_of_correction(&self.comparisons),
             limit_of_changes(&self.effects, &self.interactions),
@@ -202,7 +204,7 @@ impl Compared<'_> {
             (!self.comparisons.is_empty()).then(|| footnote(&self.comparisons)),
             Some(self.asked.margins_in_words(self.experiment)).filter(|margins| !margins.is_empty()),
         ];
-        notes.into_iter().flatten().try_for_each(|note| Ok(writeln!(out, "{note}")?))
+        out.extend(notes.into_iter().flatten());
     }
 }
 

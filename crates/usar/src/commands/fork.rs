@@ -3,9 +3,8 @@
 use clap::ArgGroup;
 use experiments::experiment::PolicySpec;
 use experiments::oracle::{Branch, Outcome, advance_to};
-use reports::table::{headed, right};
-use rne_core::{Asked, Assignment, Deadline, Decision, Question, Session};
 use serde::Serialize;
+use teaming::{Asked, Assignment, Deadline, Decision, Question, Session};
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::Checkpoint;
 
@@ -73,7 +72,7 @@ struct Output<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         stop_on_signals();
         let asked = self.trial.open_to_all(&self.file, registry)?;
         let other =
@@ -103,18 +102,18 @@ impl Arguments {
                 as_it_was: &sides[0],
                 otherwise: &sides[1],
             };
-            return print_json(&output);
+            return Report::json(&output);
         }
-        writeln!(
-            out,
+        let mut out = Report::from(format!(
             "{}, seed {}, round {} at {:.1} s\nas it was  {} decides every round\nthe fork   {fork}",
             asked.scenario.name,
             asked.seed,
             self.round,
             trial.time_s(),
             asked.spec.label
-        )?;
-        print(out, &asked, &sides)
+        ));
+        tell(&mut out, &asked, &sides);
+        Ok(out)
     }
 
     /// The changed decision.
@@ -197,48 +196,41 @@ fn changes(before: &[u32], after: &[u32]) -> String {
     }
 }
 
-fn print(out: &mut dyn Write, asked: &Trial, sides: &[Side; 2]) -> Result<(), Failure> {
-    let mut table = headed(["", "as it was", "the fork", "difference"]);
+fn tell(out: &mut Report, asked: &Trial, sides: &[Side; 2]) {
     let tasks = asked.tasks();
-    for (place, task) in tasks.iter().enumerate() {
-        let [was, fork] = sides.each_ref().map(|side| ids(&side.assignment.groups[place]));
-        let [before, after] = sides.each_ref().map(|side| &side.assignment.groups[place]);
-        table.add_row([
-            right(&format!("group of {task}")),
-            right(&was),
-            right(&fork),
-            right(&changes(before, after)),
-        ]);
-    }
-    let mut row = |name: String, value: &dyn Fn(&Side) -> f64, decimals: usize| {
+    let [before, after] = sides.each_ref().map(|side| &side.assignment.groups);
+    let groups = tasks.iter().zip(before.iter().zip(after)).map(|(task, (was, fork))| {
+        [format!("group of {task}"), ids(was), ids(fork), changes(was, fork)].map(right)
+    });
+    let mut table = Table::of(["", "as it was", "the fork", "difference"], groups);
+    let mut row = |name: &str, value: &dyn Fn(&Side) -> f64, decimals: usize| {
         let [was, fork] = sides.each_ref().map(value);
-        let cells = [
+        let [was, fork, more] = [
             format!("{was:.decimals$}"),
             format!("{fork:.decimals$}"),
             format!("{:+.decimals$}", fork - was),
         ];
-        table.add_row([right(&name), right(&cells[0]), right(&cells[1]), right(&cells[2])]);
+        table.add([right(name), right(was), right(fork), right(more)]);
     };
-    row("round: rescued".to_owned(), &|side| f64::from(side.round.total().rescued), 0);
+    row("round: rescued", &|side| f64::from(side.round.total().rescued), 0);
     for (place, task) in tasks.iter().enumerate() {
-        row(format!("of {task}"), &|side| f64::from(side.round.tasks[place].rescued), 0);
+        row(&format!("of {task}"), &|side| f64::from(side.round.tasks[place].rescued), 0);
     }
-    row("energy (points)".to_owned(), &|side| side.round.total().energy, 1);
-    row("HP (points)".to_owned(), &|side| side.round.total().hp, 2);
-    row("time (s)".to_owned(), &|side| side.round.duration_s, 1);
-    row("trial: rescued".to_owned(), &|side| f64::from(side.rescuees), 0);
+    row("energy (points)", &|side| side.round.total().energy, 1);
+    row("HP (points)", &|side| side.round.total().hp, 2);
+    row("time (s)", &|side| side.round.duration_s, 1);
+    row("trial: rescued", &|side| f64::from(side.rescuees), 0);
     for (place, task) in tasks.iter().enumerate() {
-        row(format!("of {task}"), &|side| f64::from(side.record.tasks[place].totals.rescued), 0);
+        row(&format!("of {task}"), &|side| f64::from(side.record.tasks[place].totals.rescued), 0);
     }
-    row("energy (points)".to_owned(), &|side| side.record.energy(), 1);
-    row("HP (points)".to_owned(), &|side| side.record.hp(), 2);
-    print_table(out, &table)?;
+    row("energy (points)", &|side| side.record.energy(), 1);
+    row("HP (points)", &|side| side.record.hp(), 2);
+    out.show(table);
     let [was, fork] = sides.each_ref().map(|side| &side.state_hash);
-    writeln!(out, "state hash   as it was {was}\n             the fork  {fork}")?;
+    out.say(format!("state hash   as it was {was}\n             the fork  {fork}"));
     if was == fork {
-        writeln!(out, "The fork is the same trial: round for round the same groups.")?;
+        out.say("The fork is the same trial: round for round the same groups.");
     }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! The commands: a file for each verb, in a folder for each noun. The first verbs are of no noun.
 
-mod bench;
 mod check;
 mod cluster;
 mod compare;
@@ -29,12 +28,19 @@ use std::sync::LazyLock;
 use clap::{CommandFactory, Parser};
 use experiments::provenance::COMMIT;
 
+use crate::arguments::ProgramsArgument;
+use crate::builds::features;
+use crate::command_line::CommandLine;
 use crate::prelude::*;
+use crate::studies::present;
 
-/// The version, with the commit from which the program was built, if known.
-static VERSION: LazyLock<String> = LazyLock::new(|| match COMMIT {
-    "unknown" => env!("CARGO_PKG_VERSION").to_owned(),
-    commit => format!("{} (commit {commit})", env!("CARGO_PKG_VERSION")),
+/// The version, with the commit from which the program was built, if known, and its features.
+pub(crate) static VERSION: LazyLock<String> = LazyLock::new(|| {
+    let (version, features) = (env!("CARGO_PKG_VERSION"), features());
+    match COMMIT {
+        "unknown" => format!("{version} (features: {features})"),
+        commit => format!("{version} (commit {commit}; features: {features})"),
+    }
 });
 
 /// Which robots should team up? A laboratory for trust and grouping policies
@@ -57,24 +63,53 @@ Data goes to stdout, progress and messages to stderr."
 pub(crate) struct Cli {
     #[command(subcommand)]
     verb: Verb,
+    #[command(flatten)]
+    programs: ProgramsArgument,
 }
 
-impl Cli {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        self.verb.execute(registry, out)
+impl CommandLine for Cli {
+    fn runs_programs(&self) -> bool {
+        self.programs.run_programs
+    }
+
+    fn asks_policies(&self) -> bool {
+        match &self.verb {
+            Verb::Check(check) => check.policy.is_some(),
+            Verb::Report(report) => report.simulates(),
+            Verb::Verify(verify) => !verify.without_programs,
+            Verb::Cluster(verb) => matches!(verb, cluster::Verb::Submit(_)),
+            Verb::Export(export) => export.simulates(),
+            Verb::New(_) | Verb::Compare(_) | Verb::Trust(_) | Verb::Scenario(_) | Verb::Own(_) => false,
+            Verb::Run(_)
+            | Verb::View(_)
+            | Verb::Sweep(_)
+            | Verb::Test(_)
+            | Verb::Why(_)
+            | Verb::Fork(_)
+            | Verb::Oracle(_)
+            | Verb::Search(_)
+            | Verb::Study(_) => true,
+        }
+    }
+
+    fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
+        self.verb.execute(registry)
     }
 }
 
 /// The command line. `usar --help` is an overview; of each command, `-h` shows the options that most people
 /// need and its examples, `--help` all.
-pub(crate) fn command() -> clap::Command {
-    let command = Cli::command();
+#[must_use]
+pub fn command() -> clap::Command {
+    let of_study =
+        |command: clap::Command, (name, about)| command.subcommand(clap::Command::new(name).about(about));
+    let command = present().fold(Cli::command(), of_study);
     let text = overview::text(&command);
     examples_first(command).override_help(text)
 }
 
 /// Leaves the explanation of each command to `--help`, and the examples to both.
-fn examples_first(command: clap::Command) -> clap::Command {
+pub(crate) fn examples_first(command: clap::Command) -> clap::Command {
     let all = command.get_after_help().map(ToString::to_string);
     let command = match all {
         None => command,
@@ -87,6 +122,7 @@ fn examples_first(command: clap::Command) -> clap::Command {
 }
 
 /// The verbs of a noun: an enum of their arguments, and a way to execute each.
+#[macro_export]
 macro_rules! verbs {
     ($name:ident { $($(#[$attribute:meta])* $verb:ident: $arguments:ty),+ $(,)? }) => {
         #[derive(Debug, clap::Subcommand)]
@@ -97,17 +133,16 @@ macro_rules! verbs {
         impl $name {
             pub(crate) fn execute(
                 &self,
-                registry: &rne_core::Registry,
-                out: &mut dyn std::io::Write,
-            ) -> Result<(), experiments::Failure> {
+                registry: &$crate::prelude::Registry,
+            ) -> Result<$crate::prelude::Report, $crate::prelude::Failure> {
                 match self {
-                    $(Self::$verb(arguments) => arguments.execute(registry, out),)+
+                    $(Self::$verb(arguments) => arguments.execute(registry),)+
                 }
             }
         }
     };
 }
-pub(crate) use verbs;
+pub(crate) use crate::verbs;
 
 verbs!(Verb {
     New: new::Arguments,
@@ -123,21 +158,18 @@ verbs!(Verb {
     Fork: fork::Arguments,
     Oracle: oracle::Arguments,
     Search: search::Arguments,
-    Bench: bench::Arguments,
     Trust: trust::Arguments,
     /// Scenario files: list, draw, lay out, explain
     #[command(subcommand, disable_help_subcommand = true)]
     Scenario: scenario::Verb,
-    /// Figures, tables, pictures and films, and trials for other programs
-    #[command(subcommand, disable_help_subcommand = true)]
-    Export: export::Verb,
+    Export: export::Arguments,
     /// Sweeps on a cluster
     #[command(subcommand, disable_help_subcommand = true)]
     Cluster: cluster::Verb,
-    /// Studies: what matters, how good decisions are, and a paper's claims
+    /// Studies: what matters, and how good decisions are
     #[command(subcommand, disable_help_subcommand = true)]
     Study: study::Verb,
-    /// This program: its state, completions for shells, manual pages
+    /// This program: its state, completions for shells
     #[command(name = "self", subcommand, disable_help_subcommand = true)]
     Own: self_::Verb,
 });

@@ -47,9 +47,9 @@ enum What {
 const MINIMAL: &str = include_str!("../../assets/minimal.ron");
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let name = match (&self.what, &self.name) {
-            (Some(What::Policy(policy)), _) => return policy.execute(registry, out),
+            (Some(What::Policy(policy)), _) => return policy.execute(registry),
             (None, Some(name)) => name,
             (None, None) => refuse!("NAME: must be given"),
         };
@@ -61,6 +61,6 @@ impl Arguments {
         Scenario::parse(&text, Path::new("NAME")).map_err(Failure::input)?;
         let written = create_new("NAME", &path)?.write_all(text.as_bytes());
         written.map_err(|error| trouble("NAME", &path, &error))?;
-        Ok(writeln!(out, "{}", path.display())?)
+        Ok(path.display().to_string().into())
     }
 }

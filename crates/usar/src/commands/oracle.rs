@@ -10,7 +10,7 @@ use experiments::oracle::{Coverage, DEFAULT_LIMIT, Objective, Outcome, Survey, a
 use experiments::regret::{DecisionKey, OutcomeLog};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
-use rne_core::{Assignment, Deadline, Decision, Question, Session, assignments};
+use teaming::{Assignment, Deadline, Decision, Question, Session, assignments};
 use usar_sim::simulation::Checkpoint;
 
 use crate::arguments::{
@@ -92,7 +92,7 @@ struct Asked<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         stop_on_signals();
         let trial = self.trial.open_to_all(&self.file, registry)?;
         let objective = Objective::parse(&self.metric, &trial.tasks());
@@ -118,7 +118,7 @@ impl Arguments {
         if self.shown.is_json() {
             print::json(&asked, &answers)
         } else {
-            print::text(out, &asked, &answers, self.top)
+            Ok(print::text(&asked, &answers, self.top))
         }
     }
 
@@ -222,7 +222,8 @@ pub(super) fn decision_key(
     let mut specs: Vec<PolicySpec> =
         names.filter_map(|name| PolicySpec::parse(name, &trial.registry).ok()).collect();
     specs.push(trial.spec.clone());
-    // Those that go on and are known by more than their kinds, such as a program that is named in the options.
+    // Those that go on and are known by more than their kinds, such as a program that is named in the
+    // options.
     let known: BTreeSet<Option<String>> = specs.iter().map(|spec| spec.made().fingerprint()).collect();
     specs.extend(thens.iter().flatten().filter(|then| !known.contains(&then.made().fingerprint())).cloned());
     Ok(DecisionKey {

@@ -46,7 +46,12 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    /// Whether trials may be simulated again.
+    pub(crate) fn simulates(&self) -> bool {
+        self.trial.is_some() || self.with_replays
+    }
+
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let registry = &self.measure.chosen_in(registry)?;
         let mut folder = read_sweep(&self.folder, registry)?;
         let case = self.case.named(folder.experiment())?;
@@ -60,7 +65,7 @@ impl Arguments {
             shown: self.shown(&folder, case.unwrap_or(0))?,
         };
         let path = write_report(&mut folder, wanted)?;
-        Ok(writeln!(out, "{}", path.display())?)
+        Ok(path.display().to_string().into())
     }
 
     /// The trials to draw, with their replays if requested.

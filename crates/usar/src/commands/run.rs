@@ -5,9 +5,8 @@ mod live;
 mod snapshot;
 
 use experiments::experiment::PolicySpec;
-use recording::Story;
 use reports::table::rounds_table;
-use rne_core::{Deadline, Session};
+use teaming::{Deadline, Session};
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
 use usar_sim::scenario::{EmptyTasks, Moment, Scenario, Words};
@@ -18,7 +17,6 @@ use self::live::Live;
 use self::snapshot::{Snapshot, save};
 use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments, WideArgument};
 use crate::library;
-use crate::output::print_plain_json;
 use crate::prelude::*;
 use crate::recordings;
 use crate::running::Guard;
@@ -82,7 +80,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let registry = &self.measure.chosen_in(registry)?;
         let snapshot = self.resume.as_deref().map(Snapshot::read).transpose()?;
         let otherwise = snapshot.as_ref().map(|snapshot| snapshot.identity.policy.as_str());
@@ -97,7 +95,7 @@ impl Arguments {
             save(&mut simulation, spec, path, seconds)?;
         }
         stop_on_signals();
-        let (record, story) = self.run(simulation, spec, registry)?;
+        let record = self.run(simulation, spec, registry)?;
         if let Status::Failed(reason) = &record.status {
             if is_stopped() {
                 return Err(Failure::Interrupted(format!(
@@ -108,41 +106,39 @@ impl Arguments {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
         if self.shown.is_json() {
-            return print_plain_json(&record.named(&scenario.name, &spec.label));
+            return Report::plain_json(&record.named(&scenario.name, &spec.label));
         }
-        writeln!(
-            out,
+        let mut out = Report::from(format!(
             "{}, policy {}, seed {seed}: {} s simulated, {}",
             scenario.name,
             spec.label,
             (record.time_s * 1e6).round() / 1e6,
             record.status.name().replace('_', " ")
-        )?;
+        ));
         if !record.rounds.is_empty() {
-            print_table(out, &rounds_table(&record, &scenario.words, self.wide.is_wide()))?;
+            out.show(rounds_table(&record, &scenario.words, self.wide.is_wide()));
         }
-        print(out, &record, &scenario.words)?;
-        let sends = scenario.mission.empty_tasks == EmptyTasks::GetGroups;
-        let finished = if sends { finished_tasks(&record) } else { Vec::new() };
-        finished.iter().chain(&too_late(scenario, &record)).try_for_each(|note| writeln!(out, "{note}"))?;
-        story.iter().try_for_each(|line| Ok(writeln!(out, "{line}")?))
+        tell(&mut out, &record, &scenario.words);
+        if scenario.mission.empty_tasks == EmptyTasks::GetGroups {
+            out.extend(finished_tasks(&record));
+        }
+        out.extend(too_late(scenario, &record));
+        Ok(out)
     }
 
-    /// Runs the trial with all its listeners; returns its record, and its story if it has one.
+    /// Runs the trial with all its listeners.
     fn run(
         &self,
         simulation: Simulation,
         spec: &PolicySpec,
         registry: &Registry,
-    ) -> Result<(TrialRecord, Vec<String>), Failure> {
+    ) -> Result<TrialRecord, Failure> {
         let mut session = session_of(spec, simulation.scenario(), simulation.seed())?;
         let guard = Guard::new(self.max_trial_s);
         let mut lines = self.events.as_deref().map(EventLines::begin).transpose()?;
-        let mut story = Story::of(&simulation);
         let mut live = (!self.quiet).then(|| Live::begin(&spec.label));
         let mut watch = |simulation: &Simulation| {
             guard.look(simulation)?;
-            story.iter_mut().for_each(|story| story.listen(simulation));
             live.iter_mut().for_each(|live| live.listen(simulation));
             lines.iter_mut().try_for_each(|lines| lines.listen(simulation))
         };
@@ -160,7 +156,7 @@ impl Arguments {
         };
         live.into_iter().for_each(Live::finish);
         lines.map_or(Ok(()), EventLines::finish)?;
-        Ok((record?, story.map_or_else(Vec::new, |story| story.tell())))
+        record
     }
 }
 
@@ -210,62 +206,56 @@ fn too_late(scenario: &Scenario, record: &TrialRecord) -> Vec<String> {
 }
 
 /// Prints what came of a trial as a whole.
-fn print(out: &mut dyn Write, record: &TrialRecord, words: &Words) -> Result<(), Failure> {
+fn tell(out: &mut Report, record: &TrialRecord, words: &Words) {
     let rescued = record.rescued();
     let by_task = record.tasks.iter().map(|task| format!("{} {}", task.task, task.totals.rescued));
     let by_task = by_task.collect::<Vec<_>>().join(", ");
     let by_task = if by_task.is_empty() { by_task } else { format!(" ({by_task})") };
-    writeln!(
-        out,
+    out.say(format!(
         "{:<12} {rescued}{by_task} in {} complete rounds; on board at the end {}",
         words.text("rescued"),
         record.completed_rounds,
         record.secured() - rescued
-    )?;
+    ));
     let per = |cost: f64| match rescued {
         0 => "-".to_owned(),
         _ => format!("{:.2}", cost / f64::from(rescued)),
     };
     let (label, hp) = (words.text("per rescuee"), words.text("HP"));
-    writeln!(out, "{label:<12} {} energy, {} {hp} (points)", per(record.energy()), per(record.hp()))?;
+    out.say(format!("{label:<12} {} energy, {} {hp} (points)", per(record.energy()), per(record.hp())));
     let (waiting, stall) = (record.waiting_s(), record.longest_stall_s());
-    writeln!(
-        out,
+    out.say(format!(
         "robots       turned back {}, {} stranded, {} disabled",
         counted(record.counts.turned_back as usize, "time"),
         record.stranded(),
         record.disabled()
-    )?;
-    writeln!(
-        out,
+    ));
+    out.say(format!(
         "conflicts    {}, deadlocks {}, {waiting:.0} s waited in all, longest stall {stall:.1} s",
         record.counts.conflicts, record.counts.deadlocks
-    )?;
-    writeln!(
-        out,
+    ));
+    out.say(format!(
         "right of way a robot made room {}, the turn passed {}, a set backed off {}",
         counted(record.counts.retreats as usize, "time"),
         counted(record.counts.rotations as usize, "time"),
         counted(record.counts.back_offs as usize, "time")
-    )?;
+    ));
     if record.counts.errands_done + record.counts.unreachable > 0 {
         let (done, unreachable) = (record.counts.errands_done, record.counts.unreachable);
-        writeln!(out, "places       {done} errands done, {unreachable} places given up as unreachable")?;
+        out.say(format!("places       {done} errands done, {unreachable} places given up as unreachable"));
     }
     for CutOff { robot, first_s, times, place: [x, y], cause } in &record.cut_off {
         let why = cause.name();
-        writeln!(
-            out,
+        out.say(format!(
             "cut off      robot {robot} at {first_s:.1} s, {times} times in all: it {why} to ({x:.1}, {y:.1})"
-        )?;
+        ));
     }
     if record.stalled > 0 {
         let robots = counted(record.stalled as usize, "robot");
-        writeln!(out, "stalled      {robots} at the end: with something to do, and no nearer to it")?;
+        out.say(format!("stalled      {robots} at the end: with something to do, and no nearer to it"));
     }
     if let Some(overlaps) = record.overlaps {
-        writeln!(out, "overlaps     {overlaps}")?;
+        out.say(format!("overlaps     {overlaps}"));
     }
-    writeln!(out, "state hash   {}", record.state_hash)?;
-    Ok(())
+    out.say(format!("state hash   {}", record.state_hash));
 }

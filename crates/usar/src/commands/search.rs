@@ -6,6 +6,7 @@ use experiments::comparison::{CONFIDENCE, Choice, Comparison, compare, short};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::explore::{Candidate, Descent, FOUND, Hunt, Outcome, Space, Trail};
 use experiments::files::NewFile;
+use experiments::job::interrupted;
 use experiments::sweep::folder::{Folder, Opening};
 use statistics::Moments;
 use statistics::bootstrap::interval;
@@ -81,19 +82,15 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let hunt = self.hunt(registry)?;
         let folder = self.parameters.folder(&hunt.space.experiment, "search");
         let mut trail = hunt.open(&folder, self.parameters.fresh)?;
-        let stopped = || {
-            let place = folder.display();
-            Failure::Interrupted(format!("stopped; what is done is in {place}, and the same command goes on"))
-        };
         if !self.search(&hunt, &mut trail)? {
-            return Err(stopped());
+            return Err(interrupted(&folder, "what is done is"));
         }
         let (best, outcome) = hunt.best(&trail).ok_or_else(|| {
-            let reason = trail.candidates().first().and_then(|first| first.outcome.as_ref().err());
+            let reason = trail.entries.first().and_then(|first| first.outcome.as_ref().err());
             let reason = reason.map_or(String::new(), ToString::to_string);
             Failure::run(format!("no candidate could be run: {reason}"))
         })?;
@@ -102,9 +99,9 @@ impl Arguments {
         NewFile::write(&folder, FOUND, hunt.text(best, &what)?.as_bytes())?;
         let confirmed = self.confirm(&folder, registry)?;
         let found = Found { hunt: &hunt, trail: &trail, best, outcome };
-        self.print(out, &found, &confirmed)?;
+        self.told(&found, &confirmed)?.print()?;
         self.parameters.progress.tell(format_args!("results in {}", folder.display()));
-        Ok(())
+        Ok(Report::default())
     }
 
     fn policies(&self) -> Vec<String> {
@@ -143,7 +140,7 @@ impl Arguments {
 
     fn search(&self, hunt: &Hunt, trail: &mut Trail) -> Result<bool, Failure> {
         let progress = &self.parameters.progress;
-        progress.tell_resumed(trail.candidates().len(), "evaluations");
+        progress.tell_resumed(trail.entries.len(), "evaluations");
         progress.work(self.evaluations as usize, "evaluations", |bar| {
             hunt.search(trail, &STOP, |asked, best| {
                 bar.set_position(asked as u64);
@@ -168,14 +165,14 @@ impl Arguments {
                 there.experiment().base.resolved() != experiment.base.resolved()
                     || there.experiment().trials > experiment.trials
             });
-        let opening = Opening { shard: None, is_fresh: is_other || self.parameters.fresh };
+        let opening = Opening { is_fresh: is_other || self.parameters.fresh, ..Opening::default() };
         let mut confirmed = Folder::open(&path, experiment, opening, &mut |_| {})?;
         self.parameters.progress.run_missing(&mut confirmed, None, None)?;
         confirmed.finish(&STOP)?;
         Ok(confirmed)
     }
 
-    fn print(&self, out: &mut dyn Write, found: &Found, confirmed: &Folder) -> Result<(), Failure> {
+    fn told(&self, found: &Found, confirmed: &Folder) -> Result<Report, Failure> {
         let metric = confirmed.experiment().metrics.named(&self.metric)?;
         let comparison = match &self.against {
             None => None,
@@ -186,23 +183,21 @@ impl Arguments {
         };
         let alone = confirmed.values(0, 0, metric);
         if self.json.json {
-            return print_json(&found.as_json(comparison.as_ref(), &alone));
+            return Report::json(&found.as_json(comparison.as_ref(), &alone));
         }
-        found.print(out, self.trials)?;
+        let mut out = found.told(self.trials);
         let last = self.confirm_seed + u64::from(self.confirm_trials) - 1;
-        writeln!(
-            out,
+        out.say(format!(
             "\nRun again on {} fresh seeds ({} to {last}), by which no candidate was judged:",
             self.confirm_trials, self.confirm_seed
-        )?;
+        ));
         match comparison {
             Some(comparison) => {
-                writeln!(out, "{}", self.verdict(found.hunt.is_lowest, &comparison))?;
-                writeln!(out, "{}", comparison.in_words)?;
+                out.extend([self.verdict(found.hunt.is_lowest, &comparison), comparison.in_words]);
             }
-            None => writeln!(out, "{}", in_words(&found.hunt.space.outcomes[0], &alone))?,
+            None => out.say(in_words(&found.hunt.space.outcomes[0], &alone)),
         }
-        Ok(())
+        Ok(out)
     }
 }
 
@@ -230,39 +225,38 @@ struct Found<'a> {
 }
 
 impl Found<'_> {
-    fn print(&self, out: &mut dyn Write, trials: u32) -> Result<(), Failure> {
-        for (free, value) in self.hunt.space.free.iter().zip(&self.best.values) {
-            writeln!(out, "{}", free.found(*value))?;
-        }
-        let (first, count) = (self.hunt.first_seed, self.trail.candidates().len());
+    fn told(&self, trials: u32) -> Report {
+        let free = self.hunt.space.free.iter().zip(&self.best.values);
+        let mut out = Report::of(free.map(|(free, value)| free.found(*value)));
+        let (first, count) = (self.hunt.first_seed, self.trail.entries.len());
         let last = first + u64::from(trials) - 1;
-        let start = self.trail.candidates().first().and_then(|first| first.outcome.clone().ok());
+        let start = self.trail.entries.first().and_then(|first| first.outcome.clone().ok());
         let start = start.map_or("-".to_owned(), short);
-        writeln!(
-            out,
+        out.say(format!(
             "\n{} is {} there, and {start} in the scenario as it is, on the {trials} seeds of the search \
              ({first} to {last});\n\
              the {} of {count} candidates, and so flattered by chance.",
             self.hunt.space.outcomes[0].name(),
             short(self.outcome),
-            if self.hunt.is_lowest { "lowest" } else { "highest" },
-        )?;
-        if self.trail.candidates().first() == Some(self.best) {
-            writeln!(out, "No candidate is worse than the scenario as it is.")?;
+            if self.hunt.is_lowest { "lowest" } else { "highest" }
+        ));
+        if self.trail.entries.first() == Some(self.best) {
+            out.say("No candidate is worse than the scenario as it is.");
         }
-        Ok(())
+        out
     }
 
     fn as_json(&self, comparison: Option<&Comparison>, alone: &[f64]) -> serde_json::Value {
         let free = self.hunt.space.free.iter().zip(&self.best.values);
         let values: serde_json::Map<String, serde_json::Value> =
             free.map(|(free, value)| (free.name.clone(), (*value).into())).collect();
+        let first = self.trail.entries.first();
         serde_json::json!({
             "outcome": self.hunt.space.outcomes[0],
             "values": values,
             "on_search_seeds": self.outcome,
-            "as_it_is_on_search_seeds": self.trail.candidates().first().and_then(|first| first.outcome.clone().ok()),
-            "candidates": self.trail.candidates().len(),
+            "as_it_is_on_search_seeds": first.and_then(|first| first.outcome.clone().ok()),
+            "candidates": self.trail.entries.len(),
             "confirmation": comparison,
             "confirmed_mean": Moments::of(alone).mean,
             "confirmed_interval": interval(alone, CONFIDENCE),

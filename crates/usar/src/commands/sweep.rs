@@ -15,8 +15,10 @@ use reports::table::policy_table;
 
 use self::precision::Precision;
 use crate::arguments::{MeasureArgument, ProgressArguments, Selection, ShownArguments, count, opened};
+use crate::builds::check_kind;
 use crate::input::{check_trials, tell_doubts, tell_warnings_of_all};
 use crate::library;
+#[cfg(feature = "exports")]
 use crate::parquets::write_parquets;
 use crate::prelude::*;
 use crate::recordings::{Recorded, record_trials};
@@ -62,6 +64,9 @@ pub(crate) struct Arguments {
     /// Start over: delete what an earlier run has left in the folder
     #[arg(long, hide_short_help = true)]
     fresh: bool,
+    /// Take no lock, on a file system that has none: no other process may write there
+    #[arg(long, hide_short_help = true)]
+    no_lock: bool,
     /// Run part i of n only
     #[arg(long, value_name = "i/n", hide_short_help = true)]
     shard: Option<Shard>,
@@ -96,10 +101,11 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         if !(self.max_trial_s > 0.0 && self.max_trial_s <= 1e9) {
             refuse!("--max-trial-s: must be above 0, found {}", self.max_trial_s);
         }
+        check_kind("--tables", &self.tables)?;
         let registry = &self.measure.chosen_in(registry)?;
         let mut experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
         if !self.progress.quiet {
@@ -125,7 +131,7 @@ impl Arguments {
         experiment.check_start(&self.file)?;
 
         stop_on_signals();
-        let opening = Opening { shard: self.shard, is_fresh: self.fresh };
+        let opening = Opening { shard: self.shard, is_fresh: self.fresh, has_no_lock: self.no_lock };
         let mut folder = opened(&path, experiment, opening)?;
         self.run(&mut folder)?;
         let most = self.most(folder.experiment());
@@ -134,20 +140,20 @@ impl Arguments {
             self.run(&mut folder)?;
         }
         folder.finish(&STOP)?;
+        #[cfg(feature = "exports")]
         if self.tables == "parquet" {
             write_parquets(&folder)?;
         }
         if let Some(which) = &self.recordings {
             record_trials(&mut folder, which, &STOP)?;
         }
-        print(out, &folder)?;
-        if let Some(precision) = &precision {
-            let verdict = precision.verdict(&folder);
-            writeln!(out, "{verdict}")?;
-            Hosts::note_rule(folder.path(), verdict)?;
-        }
+        let verdict = precision.as_ref().map(|precision| precision.verdict(&folder));
+        let mut out = told(&folder);
+        out.extend(&verdict);
+        out.print()?;
+        verdict.map_or(Ok(()), |verdict| Hosts::note_rule(folder.path(), verdict))?;
         self.progress.tell(format_args!("results in {}", path.display()));
-        check_trials([&folder])
+        check_trials([&folder]).map(|()| Report::default())
     }
 
     /// Largest number of trials with --precision.
@@ -167,25 +173,23 @@ fn default_path(name: &str, shard: Option<Shard>) -> PathBuf {
     Path::new("results").join(format!("{name}{part}"))
 }
 
-/// Prints the table of each case, and the number of trials behind it.
-pub(crate) fn print(out: &mut dyn Write, folder: &Folder) -> Result<(), Failure> {
+/// The table of each case, and the number of trials behind it.
+pub(crate) fn told(folder: &Folder) -> Report {
+    let mut out = Report::default();
     let experiment = folder.experiment();
     for (i, case) in experiment.cases.iter().enumerate().take(MAX_TABLES) {
         let place = experiment.describe(case);
         if !place.is_empty() {
-            writeln!(out, "{}", place.trim_end_matches(": "))?;
+            out.say(place.trim_end_matches(": "));
         }
-        print_table(out, &policy_table(folder, i))?;
+        out.show(policy_table(folder, i));
     }
     if experiment.cases.len() > MAX_TABLES {
-        writeln!(
-            out,
-            "... and {} further cases: see trials.csv, or `usar report`",
-            experiment.cases.len() - MAX_TABLES
-        )?;
+        let more = experiment.cases.len() - MAX_TABLES;
+        out.say(format!("... and {more} further cases: see trials.csv, or `usar report`"));
     }
-    writeln!(out, "{}", footnote(folder))?;
-    Ok(())
+    out.say(footnote(folder));
+    out
 }
 
 fn footnote(folder: &Folder) -> String {

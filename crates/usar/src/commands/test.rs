@@ -7,7 +7,7 @@ use experiments::comparison::short;
 use experiments::expect::{Expectation, Expected, Judgement, Verdict, expectations, judge, looks};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Outcome, TrialKey, run_all};
-use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;
 
 use crate::arguments::{JsonArgument, ProgressArguments, count};
@@ -69,7 +69,7 @@ struct Tested {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let mut suites = Vec::new();
         for file in &self.files {
             let suite = Suite::load(file, self.max_trials, registry)?;
@@ -80,7 +80,7 @@ impl Arguments {
         for suite in suites {
             let found = suite.test(&self.progress)?;
             if !self.json.json {
-                found.iter().try_for_each(|tested| writeln!(out, "{}", in_words(tested)))?;
+                Report::of(found.iter().map(in_words)).print()?;
             }
             tested.extend(found);
         }
@@ -89,12 +89,12 @@ impl Arguments {
         }
         let wanting = tested.iter().filter(|tested| tested.judgement.verdict != Verdict::Holds).count();
         if self.json.json {
-            print_json(&serde_json::json!({"expectations": tested}))?;
+            Report::json(&serde_json::json!({"expectations": tested}))?.print()?;
         }
         if wanting > 0 {
             return Err(Failure::run(format!("{wanting} of {} expectations do not hold", tested.len())));
         }
-        Ok(())
+        Ok(Report::default())
     }
 }
 
@@ -245,7 +245,7 @@ fn in_words(tested: &Tested) -> String {
 }
 
 fn write_junit(path: &Path, tested: &[Tested]) -> Result<(), Failure> {
-    let mut report = Report::new("usar test");
+    let mut report = quick_junit::Report::new("usar test");
     for suite_of in tested.chunk_by(|a, b| a.file == b.file) {
         let mut suite = TestSuite::new(suite_of[0].file.clone());
         for one in suite_of {

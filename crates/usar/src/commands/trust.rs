@@ -70,21 +70,21 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let (weights, is_json) = (self.weights.as_deref(), self.shown.is_json());
-        let Some(file) = &self.file else { return self.pair.execute(weights, is_json, out) };
+        let Some(file) = &self.file else { return self.pair.told(weights, is_json) };
         if let Some(policy) = &self.policy {
             let spec = parse_policy("--policy", policy, registry)?;
-            return groups::show(&self.team.read(file, weights)?, &spec, is_json, out);
+            return groups::told(&self.team.read(file, weights)?, &spec, is_json);
         }
         let registry = self.measure.chosen_in(registry)?;
-        let picture = |path: &PathBuf| PictureFile::of(path, &["svg", "png", "pdf"], self.replace);
+        let picture = |path: &PathBuf| PictureFile::of("--out", path, &["svg", "png", "pdf"], self.replace);
         let picture = self.out.as_ref().map(picture).transpose()?;
         let team = self.team.read(file, weights)?;
         let matrix = matrix::Matrix::of(&team, &registry)?;
         if let Some(picture) = &picture {
             picture.write(&matrix.drawn())?;
         }
-        if is_json { matrix.print_json() } else { matrix.print(out) }
+        if is_json { matrix.as_json() } else { Ok(matrix.told()) }
     }
 }

@@ -1,17 +1,19 @@
 //! `usar verify`: checks whether the numbers of a finished sweep are reproduced.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
-use experiments::experiment::{Experiment, Program};
+use experiments::experiment::{Experiment, PolicySpec, Program};
 use experiments::provenance::{COMMIT, Manifest};
 use experiments::run::{Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::Folder;
-use rne_core::Basis;
 use serde_json::{Value, json};
+use teaming::Basis;
 
 use crate::arguments::{JsonArgument, ProgressArguments, count};
+#[cfg(feature = "exports")]
 use crate::parquets::strange_parquets;
 use crate::prelude::*;
 
@@ -23,15 +25,22 @@ has the same hash chain and the same line in the journal, byte for byte, and eve
 journal gives. Otherwise the first trial, step and part of the state that differ are named (bodies, robots, \
 debris, rescuees, beliefs, mission, routes, resolver or events), or the number, or the file.
 
+A policy that is a program is asked again only if this user has allowed its command. Its trials are left out \
+otherwise, and the exit status is 1, or 0 with --without-programs.
+
 Examples:
   usar verify results/paper
-  usar verify results/paper --sample 10")]
+  usar verify results/paper --sample 10
+  usar verify results/mine --without-programs")]
 pub(crate) struct Arguments {
     /// Folder of a finished sweep
     folder: PathBuf,
     /// Run only this many trials, spread evenly over the sweep
     #[arg(long, value_parser = count(1..))]
     sample: Option<u32>,
+    /// Leave out the trials of policies that are programs
+    #[arg(long, conflicts_with = "run_programs")]
+    pub(super) without_programs: bool,
     #[command(flatten)]
     progress: ProgressArguments,
     #[command(flatten)]
@@ -42,7 +51,7 @@ pub(crate) struct Arguments {
 const LONGEST_TRIAL: Duration = Duration::from_hours(1);
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let (mut folder, damage) = Folder::read_damaged(&self.folder, registry)?;
         let (experiment, manifest) = (folder.shared_experiment(), folder.manifest().clone());
         let all: Vec<TrialKey> = experiment.keys(manifest.shard).collect();
@@ -55,16 +64,21 @@ impl Arguments {
             );
         }
         damage.iter().for_each(tell);
-        let chosen = self.choose(&self.repeatable(&experiment, all.clone()));
-        if chosen.is_empty() && !all.is_empty() {
+        let of_programs = self.not_allowed(&experiment);
+        let (left_out, rest) =
+            all.iter().cloned().partition(|key: &TrialKey| of_programs.contains(&key.policy));
+        let left_out: Vec<TrialKey> = left_out;
+        let chosen = self.choose(&self.repeatable(&experiment, rest));
+        if chosen.is_empty() && left_out.is_empty() && !all.is_empty() {
             return Err(Failure::run("no trial can be verified: no policy of it can be asked again"));
         }
         let count = chosen.len();
-        self.mention_other_program(&experiment, &manifest)?;
+        self.mention_other_program(&experiment, &manifest, &of_programs)?;
         let mut differences = self.run_again(&mut folder, chosen)?;
         differences.sort();
-        let mut strange = strange_files(&mut folder)?;
-        strange.extend(strange_parquets(&folder)?);
+        let strange = strange_files(&mut folder)?;
+        #[cfg(feature = "exports")]
+        let strange = [strange, strange_parquets(&folder)?].concat();
         if self.json.json {
             let differences: Vec<Value> = differences
                 .iter()
@@ -72,9 +86,11 @@ impl Arguments {
                     json!({"case": case + 1, "policy": label, "seed": seed, "difference": what})
                 })
                 .collect();
-            print_json(&json!({
-                "trials": all.len(), "run_again": count, "differences": differences, "changed_files": strange,
-            }))?;
+            Report::json(&json!({
+                "trials": all.len(), "run_again": count, "of_programs": left_out.len(),
+                "differences": differences, "changed_files": strange,
+            }))?
+            .print()?;
         }
         let of_all = if count < all.len() { format!(" (of {})", all.len()) } else { String::new() };
         let verdict = match differences.first() {
@@ -83,10 +99,25 @@ impl Arguments {
                 format!("{} of {count} trials{of_all} do not match\n{first}", differences.len())
             }
         };
+        let is_sound = differences.is_empty() && damage.is_none() && strange.is_empty();
+        if is_sound && !left_out.is_empty() {
+            let verdict = format!(
+                "nothing wrong in {count} of {}; {} of programs, not run",
+                counted(all.len(), "trial"),
+                if left_out.len() == 1 { "1 is".to_owned() } else { format!("{} are", left_out.len()) }
+            );
+            return match (self.without_programs, self.json.json) {
+                (true, true) => Ok(Report::default()),
+                (true, false) => Ok(verdict.into()),
+                (false, _) => Err(Failure::run(format!(
+                    "{verdict}: --run-programs starts them, --without-programs leaves them out"
+                ))),
+            };
+        }
         match strange.first() {
-            None if differences.is_empty() && damage.is_none() && self.json.json => Ok(()),
+            None if differences.is_empty() && damage.is_none() && self.json.json => Ok(Report::default()),
             None if differences.is_empty() && damage.is_none() => {
-                Ok(writeln!(out, "{verdict}; every table is what they give")?)
+                Ok(format!("{verdict}; every table is what they give").into())
             }
             None => Err(Failure::run(verdict)),
             Some(_) => {
@@ -119,10 +150,29 @@ impl Arguments {
         }
     }
 
+    /// The policies that are programs, and that this user does not want to be started.
+    fn not_allowed(&self, experiment: &Experiment) -> BTreeSet<usize> {
+        let is_out = |policy: &PolicySpec| {
+            let it = &policy.made().it;
+            it.program().filter(|_| self.without_programs || it.permission().is_err())
+        };
+        let mut out = BTreeSet::new();
+        for (number, policy) in experiment.policies.iter().enumerate() {
+            let Some(command) = is_out(policy) else { continue };
+            self.progress
+                .tell(format_args!("note: policy {} is a program, not run: {command}", policy.label));
+            out.insert(number);
+        }
+        out
+    }
+
     /// Leaves out the trials of policies that cannot be asked again: they may answer the same question in
     /// another way, or this program does not have them.
     fn repeatable(&self, experiment: &Experiment, mut keys: Vec<TrialKey>) -> Vec<TrialKey> {
         for (number, policy) in experiment.policies.iter().enumerate() {
+            if !keys.iter().any(|key| key.policy == number) {
+                continue;
+            }
             let why = match policy.made().it.basis() {
                 Basis::Question | Basis::Trial => continue,
                 Basis::Undetermined => "its answers may differ",
@@ -144,13 +194,21 @@ impl Arguments {
         (0..count).map(|i| all[i * all.len() / count].clone()).collect()
     }
 
-    /// Notes that another program made the results, or that a policy has changed since. Identical numbers are guaranteed only for the same
-    /// program.
-    fn mention_other_program(&self, experiment: &Experiment, manifest: &Manifest) -> Result<(), Failure> {
+    /// Notes that another program made the results, or that a policy has changed since. Identical numbers are
+    /// guaranteed only for the same program.
+    fn mention_other_program(
+        &self,
+        experiment: &Experiment,
+        manifest: &Manifest,
+        left_out: &BTreeSet<usize>,
+    ) -> Result<(), Failure> {
         let (this, that) = (Program::running(&experiment.policies)?, manifest.program());
         if (&that.version, &that.source) == (&this.version, &this.source) {
-            let pairs = that.policies.iter().zip(&this.policies).zip(&experiment.policies);
-            for (_, policy) in pairs.filter(|((there, now), _)| there != now) {
+            let pairs = that.policies.iter().zip(&this.policies).zip(&experiment.policies).enumerate();
+            let differ = |(number, ((there, now), _)): &(usize, ((&String, &String), _))| {
+                there != now && !left_out.contains(number)
+            };
+            for (_, (_, policy)) in pairs.filter(differ) {
                 self.progress.tell(format_args!("note: policy {} has changed since the sweep", policy.label));
             }
         } else {

@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let shown = if self.with_replays {
             self.trial.replays(&self.files, registry)?
         } else {
@@ -67,11 +67,11 @@ impl Arguments {
         }
         let path = self.out.clone().unwrap_or_else(|| default_path(&self.files[0]));
         page::write(&path, &shown, self.with_replays)?;
-        writeln!(out, "{}", path.display())?;
+        Report::from(path.display().to_string()).print()?;
         if !self.no_open {
             open_page(&path);
         }
-        Ok(())
+        Ok(Report::default())
     }
 }
 

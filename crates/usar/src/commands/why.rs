@@ -7,8 +7,8 @@ use experiments::experiment::PolicySpec;
 use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
 use experiments::regret::OutcomeLog;
 use experiments::why::{Directed, OtherChoice, directed, exchanges, other_choices};
-use rne_core::{Assignment, Decision, Member, Question, assignments};
 use serde::Serialize;
+use teaming::{Assignment, Decision, Member, Question, assignments};
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
 
@@ -96,7 +96,7 @@ struct Account<'a> {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         stop_on_signals();
         let registry = &self.measure.chosen_in(registry)?;
         let asked = self.trial.open_to_all(&self.file, registry)?;
@@ -109,9 +109,9 @@ impl Arguments {
         };
         let account = self.account(&asked, &simulation, record, watched)?;
         if self.shown.is_json() {
-            return print_json(&account);
+            return Report::json(&account);
         }
-        told::text(out, &account, &asked)
+        Ok(told::text(&account, &asked))
     }
 
     /// Plays the trial up to the requested moment.

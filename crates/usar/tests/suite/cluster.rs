@@ -1,36 +1,32 @@
-//! A sweep on a cluster: its submission, its progress, and that the merged sweep has the bytes of a single
-//! run. `sbatch` is a script here; .ci/slurm does the same with Slurm itself.
+//! A sweep on a cluster: its job script, and that the merged sweep has the bytes of a single run. `sbatch` is
+//! a script here; .ci/slurm does the same with Slurm itself.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use serde_json::Value;
-use xtask::kills::files;
-
+use crate::forged::files;
 use crate::place::{place, refused};
-use crate::support::{program, read, root, succeeds, usar};
+use crate::support::{read, root, succeeds, usar};
 
 /// Of trials that are long enough for a task to be killed after its first one.
 const SWEEP: [&str; 7] = ["short.ron", "--policies", "RNE,DIS", "--trials", "20", "--set", "duration_s=600"];
 
-/// Runs a command with the script as `sbatch`.
-fn with_slurm(here: &Path, command: &mut Command, more: &[(&str, &str)]) -> Output {
+/// Runs a line of a shell with the script as `sbatch`.
+fn with_slurm(here: &Path, line: &str, more: &[(&str, &str)]) -> Output {
     let bin = here.join("bin");
     if !bin.exists() {
         std::fs::create_dir(&bin).unwrap();
         symlink(root().join("crates/usar/tests/suite/fake_sbatch"), bin.join("sbatch")).unwrap();
     }
     let path = format!("{}:{}", bin.display(), std::env::var("PATH").unwrap());
-    command.current_dir(here).env("PATH", path).envs(more.iter().copied()).output().unwrap()
+    let mut command = Command::new("bash");
+    command.args(["-c", line]).current_dir(here).env("PATH", path).envs(more.iter().copied());
+    command.output().unwrap()
 }
 
 fn submit<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&["cluster", "submit"], &SWEEP[..], &["--cpus", "2"], more].concat()
-}
-
-fn status(here: &Path) -> Value {
-    serde_json::from_str(&succeeds(&usar(here, "cluster status results/paper-shards --json"))).unwrap()
+    [&["cluster", "submit"], &SWEEP[..], more].concat()
 }
 
 #[test]
@@ -38,30 +34,27 @@ fn a_sweep_on_a_cluster_goes_on_after_kills_and_has_the_bytes_of_a_single_run() 
     let folder = place();
     let here = folder.path();
     succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--out", "alone"]].concat()));
-    let troubles = [("FAKE_KILLED", "2"), ("FAKE_LOST", "4")];
-    let mut command = Command::new(program());
-    let said = succeeds(&with_slurm(here, command.args(submit(&["--shards", "4"])), &troubles));
-    assert!(said.starts_with("4 shards: each up to 10 trials, about "), "{said}");
-    assert!(said.contains("submitted: array 1, and after it 2, which writes "), "{said}");
-    assert!(!here.join("results/paper").exists(), "the job after it waits for all");
-    let before = status(here);
-    let states: Vec<&str> =
-        before["shards"].as_array().unwrap().iter().map(|shard| shard["state"].as_str().unwrap()).collect();
-    assert_eq!(states, ["done", "lost", "done", "lost"]);
-    let finished = before["finished"].as_u64().unwrap();
-    assert!((21..30).contains(&finished), "two shards and a part of the second: {finished}");
-    // The printed command submits the missing tasks, and the merge.
-    let shown = succeeds(&usar(here, "cluster status results/paper-shards"));
-    let line = shown.lines().last().unwrap();
-    assert!(line.contains("--array=2,4%4 "), "{line}");
-    let output = with_slurm(here, Command::new("bash").args(["-c", line]), &[]);
-    succeeds(&output);
-    assert_eq!(status(here)["finished"], 40);
-    assert!(read(&here.join("results/paper-shards/logs/merge.log")).contains("report.html"));
+    let said = succeeds(&usar(here, &submit(&["--shards", "4"])));
+    assert!(
+        said.contains("results/paper-shards/job.sh: 4 shards of up to 10 trials; to submit them:"),
+        "{said}"
+    );
+    let line = said.lines().last().unwrap();
+    let shards = here.join("results/paper-shards");
+    let log = || read(&shards.join("logs/merge.log"));
+    succeeds(&with_slurm(here, line, &[("FAKE_KILLED", "2"), ("FAKE_LOST", "4")]));
+    assert!(!here.join("results/paper").exists(), "{}", log());
+    let merged = log();
+    assert!(merged.contains("error: shard 2/4, 4/4: missing trials, "), "{merged}");
+    let [first, place] = ["1/sweep.ron", "4"].map(|name| shards.join(name).display().to_string());
+    assert!(merged.contains(&format!("\n  usar sweep {first} --shard 4/4 --out {place}\n")), "{merged}");
+    // The same line again runs what is missing.
+    succeeds(&with_slurm(here, line, &[]));
+    assert!(log().contains("report.html"), "{}", log());
     let mut whole = files_only(&here.join("results/paper"));
     whole.retain(|name, _| name != "report.html" && name != "report.files");
     assert!(whole == files_only(&here.join("alone")), "its bytes are those of a single run");
-    refused(here, 2, &submit(&["--shards", "4"]), &["results/paper-shards exists; nothing was submitted"]);
+    refused(here, 2, &submit(&["--shards", "4"]), &["results/paper-shards exists; nothing was written"]);
 }
 
 /// The files of a folder, but not the folders in it.
@@ -71,115 +64,66 @@ fn files_only(folder: &Path) -> std::collections::BTreeMap<String, Vec<u8>> {
 }
 
 #[test]
-fn a_dry_run_prints_readable_scripts_and_writes_nothing() {
+fn a_job_script_has_the_options_of_the_sweep_and_of_sbatch() {
     let folder = place();
     let here = folder.path();
-    let before = std::fs::read_dir(here).unwrap().count();
-    let said = succeeds(&usar(
-        here,
-        &submit(&[
-            "--dry-run",
-            "--account",
-            "robots",
-            "--partition",
-            "short",
-            "--time",
-            "01:00:00",
-            "--set",
-            "dt_s=0.02",
-        ]),
-    ));
-    for line in [
-        "#SBATCH --array=1-1%1",
-        "#SBATCH --requeue",
-        "#SBATCH --signal=B:INT@60",
-        "#SBATCH --cpus-per-task=2",
-        "#SBATCH --time=01:00:00",
-        "#SBATCH --account=robots",
-        "#SBATCH --partition=short",
-    ] {
-        assert!(said.lines().any(|found| found == line), "{line}: {said}");
+    let more = ["--shards", "3", "--set", "dt_s=0.02", "--", "--account=robots", "--time=01:00:00"];
+    let said = succeeds(&usar(here, &submit(&more)));
+    assert!(said.contains("$(sbatch --parsable --array=1-3 "), "{said}");
+    let script = read(&here.join("results/paper-shards/job.sh"));
+    for line in ["#SBATCH --job-name=paper", "#SBATCH --requeue", "#SBATCH --account=robots --time=01:00:00"]
+    {
+        assert!(script.lines().any(|found| found == line), "{line}: {script}");
     }
-    assert!(
-        said.contains("short.ron --policies RNE,DIS --trials 20 --set duration_s=600 --set dt_s=0.02 \\"),
-        "{said}"
-    );
-    assert!(said.contains("nothing was written or submitted"), "{said}");
-    assert_eq!(std::fs::read_dir(here).unwrap().count(), before);
-    std::fs::write(here.join("mine.sh"), "#!/bin/bash\n@uasr@ sweep @arguments@\n").unwrap();
-    refused(
-        here,
-        2,
-        &submit(&["--dry-run", "--template", "mine.sh"]),
-        &["--template: line 2: @uasr@ must be one of @name@"],
-    );
-    refused(here, 2, &submit(&["--account", "a b"]), &["must be letters, digits and -_.:, found \"a b\""]);
-    let mut command = Command::new(program());
-    let output = command.args(submit(&[])).current_dir(here).env("PATH", here).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.code() == Some(1) && said.contains("--dry-run prints the scripts"), "{said}");
-    assert!(!here.join("results").join("paper-shards").exists());
+    let chosen = "short.ron --policies RNE,DIS --trials 20 --set duration_s=600 --set dt_s=0.02 \\";
+    assert!(script.contains(chosen), "{script}");
+    assert!(script.contains(said.lines().last().unwrap()), "{script}");
+    assert!(script.lines().count() < 25, "{script}");
+    let wrong = ["--shards", "2", "--out", "w", "--", "--comment=a b"];
+    refused(here, 2, &submit(&wrong), &["must be one word without quotes and #, found \"--comment=a b\""]);
+    let many = "--shards: must be at most 20, the seeds of all cases, found 21";
+    refused(here, 2, &submit(&["--shards", "21", "--out", "w"]), &[many]);
+    assert!(!here.join("w-shards").exists());
 }
 
 #[test]
-fn shards_that_were_run_by_hand_have_a_status_too() {
+fn the_commands_of_a_merge_run_the_shards_that_are_missing() {
     let folder = place();
     let here = folder.path();
-    succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--shard", "1/2"]].concat()));
-    let said = succeeds(&usar(here, "cluster status results"));
-    assert!(said.starts_with("shards  2: 1 done, 1 lost\ntrials  20 of 40\n"), "{said}");
-    let own = std::fs::read_dir(here.join("results")).unwrap().next().unwrap().unwrap().path();
-    let own = own.strip_prefix(here).unwrap();
-    let command = format!("usar sweep {}/sweep.ron --shard 2/2 --out results/2", own.display());
-    assert!(said.contains(&format!("not started; to run it: {command}")), "{said}");
-    let said = succeeds(&usar(here, &["cluster", "status", own.to_str().unwrap()]));
-    assert!(said.starts_with("shards  1: 1 done\ntrials  20 of 20\n"), "{said}");
-    // The command runs the shard, and then the command that merges is told.
+    succeeds(&usar(here, &[&["sweep"], &SWEEP[..], &["--shard", "1/2", "--check"]].concat()));
+    let merge = "cluster merge results --out whole";
+    let said = String::from_utf8_lossy(&usar(here, merge).stderr).into_owned();
+    let command = "usar sweep results/paper-1-of-2/sweep.ron --shard 2/2 --check --out results/2";
+    assert!(said.contains("error: shard 2/2: missing trials, 20: trial 2 of RNE, "), "{said}");
+    assert!(said.lines().last() == Some(&format!("  {command}")), "{said}");
     succeeds(&usar(here, &command.split(' ').skip(1).collect::<Vec<_>>()));
-    let said = succeeds(&usar(here, "cluster status results"));
-    assert!(said.ends_with("this merges them:\nusar cluster merge results --out results-merged\n"), "{said}");
-    succeeds(&usar(here, "cluster merge results --out results-merged"));
-    let said = succeeds(&usar(here, "cluster status results"));
-    assert!(said.ends_with("trials  40 of 40\n"), "{said}");
-    std::fs::create_dir(here.join("empty")).unwrap();
-    refused(here, 2, "cluster status empty", &["has neither shards nor a sweep in it"]);
+    succeeds(&usar(here, merge));
 }
 
 #[test]
-fn status_believes_no_folder_that_a_merge_refuses() {
+fn shards_of_different_sweeps_and_damaged_ones_are_not_merged() {
     let folder = place();
     let here = folder.path();
     let sweep = |more: &str, shard: &str, out: &str| {
-        let words =
-            format!("sweep short.ron --policies RNE,DIS --trials 4 {more} --shard {shard} --out {out}");
-        let words: Vec<&str> = words.split_whitespace().collect();
-        succeeds(&usar(here, &words));
+        succeeds(&usar(
+            here,
+            &format!("sweep short.ron --policies RNE,DIS --trials 4 {more} --shard {shard} --out {out}")
+                .split_whitespace()
+                .collect::<Vec<_>>(),
+        ));
     };
     sweep("", "1/2", "shards/1");
     sweep("--set duration_s=31", "2/2", "shards/2");
-    let other = "shards/1 and shards/2 are not of one sweep: duration_s: 30.0 there, 31.0 now";
-    let said = succeeds(&usar(here, "cluster status shards"));
-    assert!(said.starts_with("shards  2: 1 done, 1 refused\ntrials  4 of 8\n"), "{said}");
-    assert!(said.contains(&format!("  shard    2  refused  0 of 4 trials  {other}")), "{said}");
-    refused(here, 2, "cluster merge shards --out whole", &["shards/1 and shards/2 are not of one sweep"]);
-
-    std::fs::rename(here.join("shards/2"), here.join("shards/3")).unwrap();
+    let merge = "cluster merge shards --out whole";
+    let other = ["shards/1 and shards/2 are not of one sweep", "duration_s: 30.0 there, 31.0 now"];
+    refused(here, 2, merge, &other);
+    std::fs::remove_dir_all(here.join("shards/2")).unwrap();
     sweep("", "2/2", "shards/2");
-    sweep("", "1/3", "shards/4");
-    let said = succeeds(&usar(here, "cluster status shards"));
-    assert!(said.starts_with("shards  4: 2 done, 2 refused\ntrials  8 of 8\n"), "{said}");
-    assert!(said.contains("shards/4: is shard 1/3, and shards/1 is one of 2 shards"), "{said}");
-    assert!(!said.contains("this merges them"), "{said}");
-
-    std::fs::remove_dir_all(here.join("shards/3")).unwrap();
-    std::fs::remove_dir_all(here.join("shards/4")).unwrap();
     let archive = here.join("shards/2/journal.jsonl.gz");
     let mut bytes = std::fs::read(&archive).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
     std::fs::write(&archive, bytes).unwrap();
     let damage = "shards/2: these files do not have the checksums of the manifest: journal.jsonl.gz";
-    let said = succeeds(&usar(here, "cluster status shards"));
-    assert!(said.starts_with("shards  2: 1 done, 1 refused\n") && said.contains(damage), "{said}");
-    refused(here, 2, "cluster merge shards --out whole", &[damage]);
+    refused(here, 2, merge, &[damage]);
 }

@@ -2,16 +2,10 @@
 
 use serde_json::Value;
 
-use crate::support::{Words, root, succeeds, usar};
+use crate::support::{Words, json, root, succeeds, usar};
 
 pub fn paper_text() -> String {
     std::fs::read_to_string(root().join("scenarios/paper.ron")).unwrap()
-}
-
-pub fn json(arguments: &(impl Words + ?Sized)) -> Value {
-    let output = usar(&root(), arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 #[track_caller]

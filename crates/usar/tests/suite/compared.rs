@@ -126,32 +126,6 @@ fn a_rule_of_precision_can_be_given_again_and_needs_pairs_that_differ() {
 }
 
 #[test]
-fn an_estimate_says_trials_time_and_disk() {
-    let folder = place();
-    let json: Value = serde_json::from_str(&succeeds(&usar(
-        folder.path(),
-        "cluster estimate grid.ron --trials 100 --json",
-    )))
-    .unwrap();
-    assert_eq!((&json["trials"], &json["cases"], &json["policies"]), (&1200.into(), &4.into(), &3.into()));
-    assert_eq!(json["measured"], 24, "all policies on eight of the seeds");
-    assert!(json["seconds"].as_f64().unwrap() > 0.0 && json["bytes"].as_u64().unwrap() > 1200 * 1000);
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3, "nothing is left behind");
-    let alike = [
-        "cluster",
-        "estimate",
-        "short.ron",
-        "--policies",
-        "DIS, RNE(log_base: Two), RNE(log_base: Ten)",
-        "--trials",
-        "100",
-        "--json",
-    ];
-    let json: Value = serde_json::from_str(&succeeds(&usar(folder.path(), &alike))).unwrap();
-    assert_eq!((&json["measured"], &json["simulated"]), (&24.into(), &16.into()), "the base decides nothing");
-}
-
-#[test]
 fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
     let folder = place();
     let here = folder.path();

@@ -2,8 +2,7 @@
 
 use std::process::Command;
 
-use xtask::kills::files;
-
+use crate::forged::files;
 use crate::place::{place, refused};
 use crate::support::{program, succeeds, usar};
 
@@ -74,11 +73,11 @@ fn trouble_with_the_disk_breaks_nothing() {
     std::fs::write(here.join("file"), "").unwrap();
     refused(here, 3, "sweep short.ron --out file/results", &["cannot write to file/results"]);
 
-    std::fs::write(
-        here.join("results/paper/.lock"),
-        "{\"host\":\"n17\",\"job\":\"42_3\",\"process\":99,\"since\":\"2026-01-01T00:00:00Z\"}\n",
-    )
-    .unwrap();
+    let text = "{\"host\":\"n17\",\"job\":\"42_3\",\"process\":99,\"since\":\"2026-01-01T00:00:00Z\"}\n";
+    let path = here.join("results/paper/.lock");
+    std::fs::write(&path, text).unwrap();
+    let held = std::fs::File::open(&path).unwrap();
+    held.lock().unwrap();
     refused(
         here,
         3,
@@ -88,6 +87,9 @@ fn trouble_with_the_disk_breaks_nothing() {
             "process 99 on n17, job 42_3, since 2026-01-01T00:00:00Z",
         ],
     );
+    drop(held);
+    succeeds(&usar(here, "sweep short.ron --policies RNE --trials 4"));
+    assert!(!path.exists(), "what a process has left stands in no way");
 }
 
 #[test]

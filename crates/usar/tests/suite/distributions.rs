@@ -33,7 +33,7 @@ fn what_a_timeline_asks_for_is_told_and_goes_on_from_a_snapshot() {
     let rest = run(&["run", "w.ron", "--quiet", "--json", "--resume", "w.snapshot"]);
     assert_eq!(hash(&whole), hash(&rest));
     assert_ne!(hash(&whole), serde_json::Value::Null);
-    run(&["export", "frames", "w.usrec", "--at", "10", "--out", "frame.svg"]);
+    run(&["export", "w.usrec", "--at", "10", "--to", "frame.svg"]);
     run(&["scenario", "draw", "w.ron", "--seed", "4", "--out", "map.svg"]);
     let map = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
     assert!(map.contains("w, seed 4"));

@@ -1,7 +1,6 @@
 //! `sensitivity` and `search`: their results, their interruptions, and their refusals.
 
-use crate::calibrated::{place, refused};
-use crate::support::{read, succeeds, usar};
+use crate::support::{read, refuses as refused, succeeds, two_minutes as place, usar};
 
 const RADIUS: &str = "radiation[*].radius_m=3..9";
 

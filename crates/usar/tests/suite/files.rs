@@ -22,6 +22,21 @@ fn a_new_scenario_runs_and_nothing_is_overwritten() {
 }
 
 #[test]
+fn an_errand_without_a_way_is_told_by_check_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let lane = "(format: 2, name: \"lane\", duration_s: 100.0, dt_s: 0.02, arena_m: (12.0, 4.0),\n\
+        roles: [(name: \"robot\", radius_m: 0.25)],\n\
+        team: [(role: \"robot\", count: 1, center: (2.0, 2.0), width_m: 0.0)],\n\
+        errands: [(robot: 0, to: [(9.0, 2.0)])],\n\
+        walls: [((6, 1.5), (12, 1.5)), ((6, 2.4), (12, 2.4))])";
+    std::fs::write(folder.path().join("lane.ron"), lane).unwrap();
+    let output = usar(folder.path(), &["check", "lane.ron"]);
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(told.starts_with("note: lane.ron:4: errands[0].to[0] has no way to it"), "{told}");
+    assert_eq!(succeeds(&output), "lane.ron: ok\n");
+}
+
+#[test]
 fn scenarios_policies_roles_and_metrics_are_listed() {
     let root = root();
     let listed = |arguments: &[&str]| succeeds(&usar(&root, &[&["scenario", "list"], arguments].concat()));

@@ -5,8 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use xtask::kills::{files, journal};
-
+use crate::forged::{files, journal};
 use crate::place::{place, refused};
 use crate::support::{program, read, succeeds, usar};
 

@@ -145,7 +145,6 @@ fn what_is_no_regular_file_is_not_waited_for() {
             vec!["sweep", file],
             vec!["trust", file],
             vec!["run", "ok.ron", "--resume", file],
-            vec!["study", "yang2021", "calibrate", "ok.ron", "--over", "duration_s=5..20", "--target", file],
         ] {
             refused(here, 2, &arguments, &[file, words]);
         }

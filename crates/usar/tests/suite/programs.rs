@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::place::{column, place, refused, rows};
-use crate::support::{program, read, succeeds, usar};
+use crate::support::{program, read, succeeds, usar, usar_in};
 
 /// A policy with a program in this folder.
 const MINE: &str = "mine=EXEC(command: [\"python3\", \"mine.py\"], timeout_s: 20)";
@@ -35,7 +35,7 @@ fn sleeper(folder: &Path, round: u32) {
 }
 
 #[track_caller]
-fn nothing_lives(folder: &Path) {
+pub fn nothing_lives(folder: &Path) {
     let pids = read(&folder.join("pids"));
     let lives = |pid: &&str| {
         let state = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().unwrap().stdout;
@@ -84,13 +84,81 @@ fn energy_in_python_gives_every_bit_of_the_built_in_policy() {
 }
 
 #[test]
+fn no_process_is_left_when_the_command_is_killed() {
+    let folder = place();
+    let here = folder.path();
+    sleeper(here, 1);
+    for _ in 0..3 {
+        let _ = std::fs::remove_file(here.join("asleep"));
+        let mut child = usar_in(here)
+            .args(["sweep", "short.ron", "--policies", MINE, "--jobs", "2"])
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        while !here.join("asleep").exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        nothing_lives(here);
+    }
+}
+
+#[test]
+fn no_guard_ends_its_program_early() {
+    let folder = place();
+    let here = folder.path();
+    write(here, "");
+    for out in 0..10 {
+        let line = format!("sweep short.ron --trials 16 --jobs 8 --quiet --out {out} --policies");
+        succeeds(&usar_in(here).args(line.split(' ')).arg(MINE).output().unwrap());
+    }
+}
+
+#[test]
+fn a_program_in_a_session_of_its_own_ends_with_the_command() {
+    let folder = place();
+    let here = folder.path();
+    let lines = "import os, time\n\
+        if not os.path.exists('asleep'):\n    os.setsid()\n    print(os.getpid(), file=open('pids', 'w'))\n    \
+        open('asleep', 'w').close(); time.sleep(600)";
+    write(here, lines);
+    for signal in ["KILL", "TERM"] {
+        let _ = std::fs::remove_file(here.join("asleep"));
+        let arguments = ["run", "short.ron", "--policy", MINE];
+        let mut child = usar_in(here).args(arguments).stderr(Stdio::null()).spawn().unwrap();
+        while !here.join("asleep").exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(
+            Command::new("kill")
+                .args([format!("-{signal}"), child.id().to_string()])
+                .status()
+                .unwrap()
+                .success()
+        );
+        child.wait().unwrap();
+        nothing_lives(here);
+    }
+}
+
+#[test]
+fn a_guard_that_is_not_alone_in_its_group_starts_and_ends_nothing() {
+    let folder = place();
+    let line = format!("'{}' self guard $$ touch started; echo \"lives $?\"", program().display());
+    let output = Command::new("bash").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "lives 126\n");
+    assert!(!folder.path().join("started").exists());
+}
+
+#[test]
 fn no_process_is_left_after_ctrl_c() {
     let folder = place();
     let here = folder.path();
     sleeper(here, 2);
     let sweep =
         ["sweep", "short.ron", "--policies", MINE, "--trials", "4", "--set", "duration_s=600", "--jobs", "2"];
-    let child = Command::new(program()).args(sweep).current_dir(here).stderr(Stdio::piped()).spawn().unwrap();
+    let child = usar_in(here).args(sweep).stderr(Stdio::piped()).spawn().unwrap();
     while !here.join("asleep").exists() {
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -111,8 +179,7 @@ fn ctrl_c_before_the_first_trial_ends_the_program_too() {
         [&["sweep", "short.ron", "--policies", MINE][..], &["run", "short.ron", "--policy", MINE]]
     {
         let _ = std::fs::remove_file(here.join("asleep"));
-        let command =
-            Command::new(program()).args(arguments).current_dir(here).stderr(Stdio::piped()).spawn();
+        let command = usar_in(here).args(arguments).stderr(Stdio::piped()).spawn();
         let child = command.unwrap();
         while !here.join("asleep").exists() {
             std::thread::sleep(Duration::from_millis(5));
@@ -224,22 +291,6 @@ fn a_command_that_cannot_start_is_bad_input_and_nothing_is_written() {
 }
 
 #[test]
-fn reading_results_starts_no_program() {
-    let folder = place();
-    let here = folder.path();
-    write(here, "");
-    let policies = format!("DIS,{MINE}");
-    succeeds(&usar(here, &["sweep", "short.ron", "--policies", &policies, "--trials", "3", "--quiet"]));
-    std::fs::write(here.join("mine.py"), "open('started', 'w').close()\n").unwrap();
-    for arguments in ["compare results/paper", "export table results/paper", "report results/paper"] {
-        succeeds(&usar(here, arguments));
-        assert!(!here.join("started").exists(), "{arguments}");
-    }
-    assert_eq!(usar(here, "verify results/paper --quiet").status.code(), Some(1));
-    assert!(here.join("started").exists());
-}
-
-#[test]
 fn a_program_that_answers_in_two_ways_is_refused_unless_it_says_so() {
     let folder = place();
     let here = folder.path();
@@ -300,7 +351,7 @@ fn an_edited_program_runs_its_own_trials_again() {
     let changed = "policy mine has changed since; its trials are run again: 2";
     for (file, text) in [("table.csv", "2\n".to_owned()), ("mine.py", read(&here.join("mine.py")) + "\n")] {
         std::fs::write(here.join(file), text).unwrap();
-        let verified = usar(here, "verify results/paper");
+        let verified = usar(here, "verify results/paper --run-programs");
         succeeds(&verified);
         let note = "note: policy mine has changed since the sweep";
         assert!(String::from_utf8_lossy(&verified.stderr).contains(note));

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use experiments::sweep::folder::Folder;
 use serde_json::Value;
-use xtask::kills::files;
 
+use crate::forged::files;
 use crate::place::{column, place, refused, rows};
 use crate::support::{read, root, succeeds, usar};
 
@@ -171,6 +171,7 @@ fn the_reports_numbers_are_those_of_the_trials() {
 
 /// A figure for a paper: as wide as its column, in three formats, of one metric and of some policies.
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "needs --features full")]
 fn a_figure_fits_the_column_of_a_paper() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
@@ -180,30 +181,28 @@ fn a_figure_fits_the_column_of_a_paper() {
     sweep.extend(["--policies", "RNE,DIS", "--out", "short"]);
     succeeds(&usar(folder, &sweep));
     let figure = |more: &[&str]| {
-        let mut arguments = vec!["export", "figure", "short", "rescuees-over-time"];
-        arguments.extend(more);
-        usar(folder, &arguments)
+        usar(folder, &[&["export", "short", "--figure", "rescuees-over-time"], more].concat())
     };
-    let told = succeeds(&figure(&["--out", "a.svg", "--metric", "rescuees", "--policies", "DIS", "--grey"]));
+    let told = succeeds(&figure(&["--to", "a.svg", "--metric", "rescuees", "--policies", "DIS", "--grey"]));
     assert_eq!(told, "a.svg\n");
     let svg = read(&folder.join("a.svg"));
     assert!(svg.contains("width=\"88mm\"") && svg.contains("DIS") && !svg.contains("RNE"), "{svg}");
     assert!(!svg.contains("#D55E00"), "no colour is left");
     for name in ["groups", "levels", "sorting"] {
         let file = format!("{name}.svg");
-        succeeds(&usar(folder, &["export", "figure", "short", name, "--policies", "DIS", "--out", &file]));
+        succeeds(&usar(folder, &["export", "short", "--figure", name, "--policies", "DIS", "--to", &file]));
         let svg = read(&folder.join(&file));
         assert!(svg.contains("DIS") && !svg.contains("RNE"), "{name}: {svg}");
     }
-    succeeds(&figure(&["--out", "a.pdf"]));
-    succeeds(&figure(&["--out", "a.png", "--dpi", "60"]));
+    succeeds(&figure(&["--to", "a.pdf"]));
+    succeeds(&figure(&["--to", "a.png", "--dpi", "60"]));
     let begins = |name: &str, with: &[u8]| std::fs::read(folder.join(name)).unwrap().starts_with(with);
     assert!(begins("a.pdf", b"%PDF-") && begins("a.png", b"\x89PNG"));
     for (more, says) in [
-        (&["--out", "a.pdf"][..], "exists; nothing was overwritten"),
-        (&["--metric", "rounds"], "the figure rescuees-over-time has no panel of rounds"),
-        (&["--policies", "LUCK"], "--policies: must be policies of the sweep (RNE, DIS)"),
-        (&["--width", "800", "--out", "b.pdf"], "must be 20mm to 1000mm"),
+        (&["--to", "a.pdf"][..], "exists; nothing was overwritten"),
+        (&["--metric", "rounds", "--to", "b.pdf"], "the figure rescuees-over-time has no panel of rounds"),
+        (&["--policies", "LUCK", "--to", "b.pdf"], "--policies: must be policies of the sweep (RNE, DIS)"),
+        (&["--width", "800", "--to", "b.pdf"], "must be 20mm to 1000mm"),
     ] {
         let output = figure(more);
         let stderr = String::from_utf8_lossy(&output.stderr);

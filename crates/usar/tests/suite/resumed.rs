@@ -1,20 +1,62 @@
 //! Interrupted sweeps: killed, stopped, extended, and refused if they are different sweeps.
 
+use std::collections::BTreeSet;
+use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use xtask::kills::{files, journal, kill_sweeps};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 
+use crate::forged::{files, journal};
 use crate::place::{column, place, refused, rows};
-use crate::support::{program, succeeds, usar};
+use crate::support::{program, succeeds, usar, usar_in};
 
 #[test]
 fn a_sweep_killed_at_random_moments_ends_with_the_files_of_one_left_alone() {
+    let kills = std::env::var("USAR_KILLS").map_or(12, |kills| kills.parse().expect("a whole number"));
     let folder = place();
-    let arguments = ["sweep", "short.ron", "--trials", "4", "--policies", "RNE,DIS"];
-    let report = kill_sweeps(program(), &arguments, folder.path(), 12, 250);
-    assert!(report.kills == 12 && report.sweeps > 0, "{report:?}");
+    let command = |out: &str| {
+        let arguments = "sweep short.ron --trials 4 --policies RNE,DIS --quiet --out";
+        let mut command = usar_in(folder.path());
+        command.args(arguments.split(' ')).arg(out).stdout(Stdio::null()).process_group(0);
+        command
+    };
+    assert!(command("alone").status().unwrap().success());
+    let (alone, killed) = (files(&folder.path().join("alone")), folder.path().join("killed"));
+    let mut draws = ChaCha8Rng::seed_from_u64(kills);
+    let (mut sweeps, mut done, mut finished) = (0, 0, 0);
+    while done < kills || finished > 0 || sweeps == 0 {
+        let mut child = command("killed").spawn().unwrap();
+        if done < kills {
+            std::thread::sleep(Duration::from_millis(draws.random_range(0..=250)));
+            let group = format!("-{}", child.id());
+            Command::new("kill").args(["-9", "--", &group]).stderr(Stdio::null()).status().unwrap();
+        }
+        let status = child.wait().unwrap();
+        let now = finished_trials(&killed);
+        assert!(now >= finished, "{finished} trials were finished, {now} are left");
+        finished = now;
+        if status.success() {
+            assert!(files(&killed) == alone, "the files differ");
+            std::fs::remove_dir_all(&killed).unwrap();
+            (sweeps, finished) = (sweeps + 1, 0);
+        } else {
+            assert_eq!(status.code(), None, "it was killed");
+            done += 1;
+        }
+    }
+}
+
+/// Number of finished trials in a folder's journal; each must occur once.
+fn finished_trials(folder: &Path) -> usize {
+    let journal = journal(folder);
+    let whole = journal.rfind('\n').map_or("", |end| &journal[..end]);
+    let ids: Vec<&str> = whole.lines().filter_map(|line| line.split("\"id\":\"").nth(1)?.get(..32)).collect();
+    let different = ids.iter().collect::<BTreeSet<_>>().len();
+    assert_eq!(different, ids.len(), "a trial was done twice");
+    different
 }
 
 #[test]
@@ -95,12 +137,12 @@ fn an_interrupted_sweep_stops_at_once_and_goes_on() {
     assert!(since.elapsed() < Duration::from_secs(2));
     assert_eq!(output.status.code(), Some(130));
     assert!(String::from_utf8_lossy(&output.stderr).contains("and the same command goes on"));
-    let tidy = usar(here, "export table results/paper");
+    let tidy = usar(here, "export results/paper --to -");
     succeeds(&tidy);
     assert!(String::from_utf8_lossy(&tidy.stderr).contains("the sweep is not complete: "));
     let again = usar(here, &sweep);
     succeeds(&again);
-    assert!(usar(here, "export table results/paper").stderr.is_empty());
+    assert!(usar(here, "export results/paper --to -").stderr.is_empty());
     assert!(String::from_utf8_lossy(&again.stderr).contains("of 60 trials are there already"));
     assert_eq!(rows(&here.join("results/paper"), "trials.csv").len(), 60);
 }

@@ -1,11 +1,12 @@
 //! The program in a shell: its version, its help, its manual pages, completions, and `usar self doctor`.
 
-use crate::commands::json;
+use xtask::manual;
+
 use crate::place::refused;
-use crate::support::{read, root, succeeds, usar};
+use crate::support::{json, read, root, succeeds, usar};
 
 /// Some commands, of each depth.
-const COMMANDS: [&str; 4] = ["sweep", "cluster submit", "study regret", "study yang2021 claims"];
+const COMMANDS: [&str; 3] = ["sweep", "cluster submit", "study regret"];
 
 #[test]
 fn the_short_help_has_less_than_the_long_one_and_both_have_examples() {
@@ -14,10 +15,7 @@ fn the_short_help_has_less_than_the_long_one_and_both_have_examples() {
     for command in COMMANDS {
         let help = |flag| succeeds(&usar(&root, &command.split(' ').chain([flag]).collect::<Vec<_>>()));
         let (short, long) = (help("-h"), help("--help"));
-        assert!(
-            short.len() < long.len() && !short.contains("--fresh") || command == "cluster submit",
-            "{short}"
-        );
+        assert!(short.len() < long.len() && !short.contains("--fresh"), "{short}");
         assert!(short.contains("\nExamples:\n") && long.contains("\nExamples:\n"), "{long}");
     }
 }
@@ -27,9 +25,10 @@ fn the_version_tells_the_commit() {
     let version = succeeds(&usar(&root(), &["--version"]));
     let expected = concat!("usar ", env!("CARGO_PKG_VERSION"));
     let rest = version.trim_end().strip_prefix(expected).unwrap_or_else(|| panic!("{version}"));
-    let commit = json("self doctor --json")["commit"].as_str().unwrap().to_owned();
-    let told = if commit == "unknown" { String::new() } else { format!(" (commit {commit})") };
-    assert_eq!(rest, told);
+    let doctor = json("self doctor --json");
+    let [commit, features] = ["commit", "features"].map(|name| doctor[name].as_str().unwrap());
+    let commit = if commit == "unknown" { String::new() } else { format!("commit {commit}; ") };
+    assert_eq!(rest, format!(" ({commit}features: {features})"));
 }
 
 #[test]
@@ -63,23 +62,16 @@ fn each_shell_has_completions_that_know_policies_and_scenarios() {
 #[test]
 fn there_is_a_manual_page_of_every_command() {
     let folder = tempfile::tempdir().unwrap();
-    let here = folder.path();
-    let page = succeeds(&usar(here, "self man"));
+    manual::write_pages(folder.path()).unwrap();
+    assert!(std::fs::read_dir(folder.path()).unwrap().count() > 25);
+    let page = read(&folder.path().join("usar.1"));
     assert!(page.contains(".TH usar 1") && page.contains("Exit status:"), "{page}");
-    let told = succeeds(&usar(here, "self man --out man1"));
-    assert!(told.lines().count() > 40, "{told}");
     for name in COMMANDS.map(|command| format!("usar-{}", command.replace(' ', "-"))) {
-        let page = read(&here.join("man1").join(format!("{name}.1")));
+        let page = read(&folder.path().join(format!("{name}.1")));
         assert!(page.contains(&format!(".TH {name} 1")) && page.contains("\n.nf\nExample"), "{page}");
     }
-    refused(here, 2, "self man --out man1", &["is not empty", "--force"]);
-}
-
-#[test]
-fn the_page_of_commands_is_what_help_prints() {
-    let root = root();
-    let page = succeeds(&usar(&root, "self man --markdown"));
-    assert!(read(&root.join("docs/commands.md")) == page, "`just reference` makes docs/commands.md anew");
+    let page = manual::commands();
+    assert!(COMMANDS.iter().all(|name| page.contains(&format!("\n## usar {name}\n"))), "{page}");
 }
 
 #[test]

@@ -3,9 +3,12 @@
 use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
+/// The file of the laboratory's program, beside which those of studies stand.
 pub fn program() -> &'static Path {
-    Path::new(env!("CARGO_BIN_EXE_usar"))
+    static USAR: LazyLock<PathBuf> = LazyLock::new(|| Path::new(crate::PROGRAM).with_file_name("usar"));
+    &USAR
 }
 
 pub fn root() -> PathBuf {
@@ -42,7 +45,21 @@ impl Words for Vec<&str> {
 }
 
 pub fn usar(folder: &Path, arguments: &(impl Words + ?Sized)) -> Output {
-    Command::new(program()).args(arguments.words()).current_dir(folder).output().expect("usar runs")
+    usar_in(folder).args(arguments.words()).output().expect("usar runs")
+}
+
+/// The command in a folder, as a user with programs that nobody else has allowed.
+pub fn usar_in(folder: &Path) -> Command {
+    let mut command = Command::new(program());
+    command.current_dir(folder).env("XDG_STATE_HOME", env!("CARGO_TARGET_TMPDIR"));
+    command
+}
+
+/// The JSON that a command prints in the project's folder.
+pub fn json(arguments: &(impl Words + ?Sized)) -> serde_json::Value {
+    let output = usar(&root(), arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 #[track_caller]
@@ -53,4 +70,24 @@ pub fn succeeds(output: &Output) -> String {
 
 pub fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Checks that a command was refused with these messages.
+#[track_caller]
+pub fn refuses(output: &Output, messages: &[&str]) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    for message in messages {
+        assert!(stderr.contains(message), "must say {message:?}, said {stderr:?}");
+    }
+}
+
+/// A folder with the paper's scenario for two minutes, and a target for it.
+pub fn two_minutes() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let text = read(&root().join("scenarios/paper.ron")).replace("duration_s: 600.0", "duration_s: 120.0");
+    std::fs::write(folder.path().join("short.ron"), text).unwrap();
+    let target = "method,rescuees_hard,energy_hard\nDIS,10,150\nDIS,14,160\nDIS,12,170\n";
+    std::fs::write(folder.path().join("target.csv"), target).unwrap();
+    folder
 }

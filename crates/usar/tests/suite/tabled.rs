@@ -126,7 +126,7 @@ fn the_long_table_has_every_value_once() {
     let folder = place();
     let here = folder.path();
     succeeds(&usar(here, "sweep grid.ron --quiet --trials 1 --set duration_s=120"));
-    let text = succeeds(&usar(here, "export table results/grid"));
+    let text = succeeds(&usar(here, "export results/grid --to -"));
     let mut table = csv::Reader::from_reader(text.as_bytes());
     let header: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
     let expected = [
@@ -169,14 +169,9 @@ fn the_long_table_has_every_value_once() {
         let cell = |name: &str| row[header.iter().position(|column| column == name).unwrap()].to_owned();
         assert_eq!(find(&row[0], "DIS", [&cell("round"), &cell("task"), "energy"]), [cell("energy")]);
     }
-    succeeds(&usar(here, "export table results/grid --out tidy.csv"));
+    succeeds(&usar(here, "export results/grid --to tidy.csv"));
     assert_eq!(std::fs::read_to_string(here.join("tidy.csv")).unwrap(), text);
-    refused(
-        here,
-        2,
-        "export table results/grid --out tidy.csv",
-        &["tidy.csv exists; nothing was overwritten"],
-    );
+    refused(here, 2, "export results/grid --to tidy.csv", &["tidy.csv exists; nothing was overwritten"]);
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json as value};
 
-use crate::commands::{json, refused};
-use crate::support::{read, succeeds, usar};
+use crate::commands::refused;
+use crate::support::{json, read, succeeds, usar};
 
 /// With the worst damage 100, the needs are (10, 80), (20, 40) and (10, 40); divided by the largest values,
 /// (1/2, 1), (1, 1/2) and (1/2, 1/2). The shares are (1/3, 2/3), (2/3, 1/3) and (1/2, 1/2).
@@ -87,6 +87,7 @@ fn a_spreadsheets_table_gives_the_same_numbers() {
 }
 
 #[test]
+#[cfg_attr(not(feature = "full"), ignore = "needs --features full")]
 fn the_picture_is_of_the_named_kind_and_replaces_nothing() {
     let (folder, path) = table(SPOTS);
     for (file, begin) in [("m.svg", &b"<svg"[..]), ("m.png", b"\x89PNG"), ("m.pdf", b"%PDF")] {
@@ -112,11 +113,10 @@ fn one_robot_and_two_hundred_are_a_team() {
     let groups = matrix(&many, &["--policy", "RNE"]);
     let size = |task: usize| groups["groups"][task]["robots"].as_array().unwrap().len();
     assert_eq!((size(0), size(1)), (100, 100));
-    let decision: rne_core::Decision = serde_json::from_value(groups["decision"].clone()).unwrap();
-    assert!(decision.upper_bound > decision.score && !decision.proven_optimal);
-    let gap = format!("(gap {:.1} %)\n", decision.gap_percent.unwrap());
+    let decision: teaming::Decision = serde_json::from_value(groups["decision"].clone()).unwrap();
+    assert!(!decision.proven_optimal);
     let told = succeeds(&usar(folder.path(), &["trust", &path, "--policy", "RNE"]));
-    assert!(told.contains(&gap) && told.contains("not proven optimal"), "{told}");
+    assert!(told.contains("not proven optimal"), "{told}");
     let crowd: Vec<String> = (0..501).map(|i| format!("{i},1\n")).collect();
     let crowd = format!("id,hp\n{}", crowd.concat());
     let (_folder, path) = table(&crowd);
@@ -129,7 +129,7 @@ fn a_policy_groups_a_table_by_the_names_of_its_robots() {
     for policy in ["RNE", "ENG", "HP_DIS", "DIS", "RANDOM"] {
         let tasks = ["--task", "near,1,73,51", "--task", "far,2,15,64"];
         let answer = json(&[&["trust", &path, "--policy", policy, "--json"], &tasks[..]].concat());
-        assert!(serde_json::from_value::<rne_core::Decision>(answer["decision"].clone()).is_ok(), "{answer}");
+        assert!(serde_json::from_value::<teaming::Decision>(answer["decision"].clone()).is_ok(), "{answer}");
         let ids = |task: usize| {
             let group = answer["groups"][task]["robots"].as_array().unwrap();
             group.iter().map(|id| id.as_str().unwrap().to_owned()).collect::<Vec<_>>()
@@ -141,12 +141,7 @@ fn a_policy_groups_a_table_by_the_names_of_its_robots() {
             assert_eq!(ids(1), ["1", "3", "5"]);
             assert_eq!(answer["decision"]["assignment"]["groups"][1], value!([1, 3, 5]));
         }
-        for said in ["score", "upper_bound", "gap_percent"] {
-            assert_eq!(answer["decision"][said].is_null(), policy != "RNE", "{policy}: {said}");
-        }
-        let told =
-            succeeds(&usar(folder.path(), &[&["trust", &path, "--policy", policy], &tasks[..]].concat()));
-        assert_eq!(told.contains("(gap 0.0 %, optimal)\n"), policy == "RNE", "{told}");
+        assert_eq!(answer["decision"]["score"].is_null(), policy != "RNE", "{policy}");
     }
     // The robots with more energy take the harder task.
     let texts = TABLE.replace("\n1,", "\nspot-2,").replace("\n5,", "\nhusky,");

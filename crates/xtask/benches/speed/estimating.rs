@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use programs::questions::with_evidence;
-use rne_core::{Asked, Question};
+use teaming::{Asked, Question};
 use xtask::team::question;
 
 /// Number of decisions of each team; the median is printed.

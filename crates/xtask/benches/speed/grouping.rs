@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use rne_core::{Asked, Question};
+use teaming::{Asked, Question};
 use xtask::team::question;
 
 /// Number of groupings of each team; the median is printed.

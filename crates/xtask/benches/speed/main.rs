@@ -10,7 +10,7 @@ mod raw;
 
 use std::time::Instant;
 
-use rne_core::{Deadline, Session};
+use teaming::{Deadline, Session};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;

@@ -1,17 +1,14 @@
 //! One file per task.
 
 pub mod coverage;
-pub mod damage;
 pub mod golden;
-pub mod kills;
-pub mod limits;
-pub mod mutations;
+pub mod man;
 pub mod pages;
 pub mod quiet;
 pub mod reference;
 pub mod scale;
 pub mod scenarios;
-pub mod soak;
+pub mod weight;
 pub mod work;
 pub mod worlds;
 

@@ -1,8 +1,8 @@
-//! Renews the numbers in `docs/`: runs the command before each block and replaces the block by its output.
-//! Figures and long tables are copied beside the page.
+//! Renews the numbers on the pages of `docs/` and of the studies: runs the command before each block and
+//! replaces the block by its output. Figures and long tables are copied beside the page.
 //!
-//! `pages [PAGE ...]`, in the project's folder, with `usar` built in the same profile. What is made of results
-//! that are not there stays as it is, and is named.
+//! `pages [PAGE ...]`, in the project's folder, with `usar` built in the same profile. What is made of
+//! results that are not there stays as it is, and is named.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,9 @@ pub fn run(arguments: &[String]) -> ExitCode {
     let usar = super::usar();
     let mut chosen: Vec<PathBuf> = arguments.iter().map(PathBuf::from).collect();
     if chosen.is_empty() {
-        let docs = std::fs::read_dir("docs").expect("the folder docs").flatten().map(|entry| entry.path());
+        let folders = ["docs", "studies/bench/docs", "studies/yang2021/docs"];
+        let docs = folders.into_iter().flat_map(|folder| std::fs::read_dir(folder).expect("pages").flatten());
+        let docs = docs.map(|entry| entry.path());
         chosen.extend(docs.filter(|path| path.extension().is_some_and(|kind| kind == "md")));
         chosen.sort();
     }
@@ -43,12 +45,12 @@ pub fn run(arguments: &[String]) -> ExitCode {
         for line in page.lines().filter_map(|line| line.strip_prefix("<!-- copy ")?.strip_suffix(" -->")) {
             let (from, to) = line.split_once(' ').expect("two names");
             match std::fs::read(from) {
-                Ok(bytes) => put(to, &bytes),
+                Ok(bytes) => put(&path, to, &bytes),
                 Err(error) => eprintln!("{}: left as it is: {from}: {error}", path.display()),
             }
         }
         for (name, text) in &new.files {
-            put(name, text.as_bytes());
+            put(&path, name, text.as_bytes());
         }
         let is_same = new.page == page;
         std::fs::write(&path, new.page).expect("the page can be written");
@@ -57,9 +59,9 @@ pub fn run(arguments: &[String]) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Writes a file in `docs/`.
-fn put(name: &str, bytes: &[u8]) {
-    let path = Path::new("docs").join(name);
+/// Writes a file beside a page.
+fn put(page: &Path, name: &str, bytes: &[u8]) {
+    let path = page.with_file_name(name);
     std::fs::create_dir_all(path.parent().expect("a folder")).expect("the folder can be made");
     std::fs::write(path, bytes).expect("the file can be written");
 }

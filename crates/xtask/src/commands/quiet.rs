@@ -1,5 +1,5 @@
-//! Random worlds with the engine at rest in quiet steps, and with the engine on in every step: every hash must be
-//! the same.
+//! Random worlds with the engine at rest in quiet steps, and with the engine on in every step: every hash
+//! must be the same.
 //!
 //! `quiet [FIRST_SEED] [WORLDS] [SECONDS]`: so many worlds of each kind (open, rooms, and of all kinds with
 //! timelines), for so many simulated seconds; by default 170 of each, for 200 s.

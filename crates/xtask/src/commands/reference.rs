@@ -1,20 +1,20 @@
-//! Makes `docs/scenarios-reference.md`, `docs/events.md` and `docs/columns.md`, and the schemas of scenario
-//! and sweep files in `docs/schemas`.
+//! Makes `docs/scenarios-reference.md`, `docs/limits.md`, `docs/events.md` and `docs/columns.md`, and the
+//! schemas of scenario and sweep files in `docs/schemas`.
 
 use std::process::ExitCode;
 
-use xtask::{reference, reference_pages};
+use xtask::docs::place;
+use xtask::{limits, reference, reference_pages};
 
 pub fn run() -> ExitCode {
-    std::fs::write(reference::path(), reference::page()).expect("the page can be written");
-    println!("written: {}", reference::path().display());
-    for (path, page) in reference_pages::pages() {
-        std::fs::write(&path, page).expect("the page can be written");
-        println!("written: {}", path.display());
-    }
-    for (name, schema) in reference::schemas() {
-        let path = reference::path().with_file_name("schemas").join(format!("{name}.schema.json"));
-        std::fs::write(&path, schema).expect("the schema can be written");
+    let mut files = vec![(reference::path(), reference::page()), (limits::path(), limits::page())];
+    files.extend(reference_pages::pages());
+    files.extend(
+        reference::schemas()
+            .map(|(name, schema)| (place(&format!("docs/schemas/{name}.schema.json")), schema)),
+    );
+    for (path, text) in files {
+        std::fs::write(&path, text).expect("the file can be written");
         println!("written: {}", path.display());
     }
     ExitCode::SUCCESS

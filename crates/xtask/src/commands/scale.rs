@@ -1,12 +1,12 @@
 //! A large team at the usual density: whether it runs, how many it rescues, the time of a step, and the
 //! memory that it needs.
 //!
-//! `scale [ROBOTS] [SECONDS] [PATH=VALUE...]` sets fields of the scenario, such as `fidelity=Coarse`.
+//! `scale [ROBOTS] [SECONDS] [PATH=VALUE...]` sets fields of the scenario, such as `dt_s=0.05`.
 
 use std::process::ExitCode;
 use std::time::Instant;
 
-use rne_core::Deadline;
+use teaming::Deadline;
 use usar_sim::record::Status;
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;

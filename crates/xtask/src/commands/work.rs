@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 
-use rne_core::{Asked, Session};
+use teaming::{Asked, Session};
 use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use xtask::{density, team};

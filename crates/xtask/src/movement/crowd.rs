@@ -174,7 +174,8 @@ impl Crowd {
         let mut crossed: Vec<Option<f64>> = vec![None; self.robots as usize];
         let (mut jammed, mut samples, mut next_s) = (false, Vec::new(), 0.0);
         while matches!(simulation.advance(), Advance::Running) {
-            jammed = simulation.events().iter().any(|event| matches!(event, Event::Unreachable { .. }));
+            let gives_up = |event: &Event| matches!(event, Event::Unreachable { .. } | Event::CutOff { .. });
+            jammed = simulation.events().iter().any(gives_up);
             let (robots, time_s) = (&simulation.world().robots, simulation.time_s());
             for (robot, crossed) in robots.iter().zip(&mut crossed) {
                 if f64::from(robot.position.x) > line {

@@ -15,9 +15,10 @@ use experiments::Failure;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use problems::{PROBLEMS, Problem};
+use crate::docs::place;
+use problems::Problem;
 use table::Table;
-use trial::{Outcome, TrialError};
+use trial::Outcome;
 
 /// The seed of the instances in `scenarios/navigation/`.
 pub const FILE_SEED: u64 = 1;
@@ -57,7 +58,7 @@ flow: the sum of arrival times by the sum of the times that each robot needs alo
 arrive counts with the limit, five times the longest time alone and half a minute.
 ok: share of the trials in which all arrived and no bodies overlapped by more than a centimetre.
 peer: the least flow of ORCA, HRVO or HL, by their libraries, if ok in all trials (crates/xtask/peers).
-given up: places given up as unreachable, in all trials.
+given up: places given up, as unreachable or without progress, in all trials.
 touches: times that a robot came to touch another, for each robot.
 
 Examples:
@@ -78,8 +79,7 @@ pub fn main() -> ExitCode {
 
 /// The folder of the instances of seed 1.
 pub fn folder() -> PathBuf {
-    let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
-    manifest.ancestors().nth(2).unwrap_or(manifest).join("scenarios/navigation")
+    place("scenarios/navigation")
 }
 
 impl Options {
@@ -104,32 +104,34 @@ impl Options {
         }
         changes.extend(self.resolver.iter().map(|name| ("conflicts.resolver".to_owned(), name.clone())));
         let mut table = Table::new()?;
-        for problem in problems {
+        for problem in &problems {
             let run = |seed| trial::run(problem, seed, &changes);
-            let outcomes: Result<Vec<Outcome>, TrialError> = seeds.clone().into_par_iter().map(run).collect();
-            table.add(problem, &outcomes.map_err(Failure::run)?);
+            let outcomes: Result<Vec<Outcome>, Failure> = seeds.clone().into_par_iter().map(run).collect();
+            table.add(problem, &outcomes?);
         }
         table.finish();
         Ok(())
     }
 
-    fn problems(&self) -> Result<Vec<&'static Problem>, Failure> {
-        let is_named = |problem: &Problem, name: &String| match name.strip_suffix('*') {
+    fn problems(&self) -> Result<Vec<Problem>, Failure> {
+        let is_named = |problem: &Problem, name: &str| match name.strip_suffix('*') {
             Some(start) => problem.name.starts_with(start),
             None => problem.name == name,
         };
-        let unknown = |name: &&String| !PROBLEMS.iter().any(|problem| is_named(problem, name));
+        let mut problems = problems::problems();
+        let unknown = |name: &&String| !problems.iter().any(|problem| is_named(problem, name));
         if let Some(name) = self.problem.iter().find(unknown) {
             return Err(Failure::input(format!("no problem {name:?}; `--list` lists them")));
         }
-        let is_wanted = |problem: &&Problem| {
+        let is_wanted = |problem: &Problem| {
             self.problem.is_empty() || self.problem.iter().any(|name| is_named(problem, name))
         };
-        Ok(PROBLEMS.iter().filter(is_wanted).collect())
+        problems.retain(is_wanted);
+        Ok(problems)
     }
 }
 
-fn write(problems: &[&Problem]) -> Result<(), Failure> {
+fn write(problems: &[Problem]) -> Result<(), Failure> {
     std::fs::create_dir_all(folder()).map_err(Failure::storage)?;
     for problem in problems {
         let path = folder().join(format!("{}.ron", problem.name));
@@ -141,8 +143,8 @@ fn write(problems: &[&Problem]) -> Result<(), Failure> {
 
 /// An instance of a problem, for programs that try other methods on it.
 #[derive(Serialize)]
-struct Instance {
-    problem: &'static str,
+struct Instance<'p> {
+    problem: &'p str,
     seed: u64,
     radius_m: f64,
     speed_mps: f64,
@@ -150,13 +152,13 @@ struct Instance {
     world: world::World,
 }
 
-fn write_worlds(file: &Path, problems: &[&Problem], seeds: &RangeInclusive<u64>) -> Result<(), Failure> {
+fn write_worlds(file: &Path, problems: &[Problem], seeds: &RangeInclusive<u64>) -> Result<(), Failure> {
     let mut text = String::new();
     for problem in problems {
         for seed in seeds.clone() {
             let (radius_m, speed_mps) = (world::RADIUS_M, world::SPEED_MPS);
             let world = problem.world(seed);
-            let instance = Instance { problem: problem.name, seed, radius_m, speed_mps, world };
+            let instance = Instance { problem: &problem.name, seed, radius_m, speed_mps, world };
             text += &serde_json::to_string(&instance).map_err(Failure::run)?;
             text += "\n";
         }

@@ -37,7 +37,7 @@ impl Table {
         let flow = mean(|outcome| outcome.flow);
         let ok = outcomes.iter().filter(|outcome| outcome.is_ok()).count();
         let given_up: u32 = outcomes.iter().map(|outcome| outcome.given_up).sum();
-        let peer = self.peers.get(problem.name).map_or("none".to_owned(), |flow| format!("{flow:.3}"));
+        let peer = self.peers.get(&problem.name).map_or("none".to_owned(), |flow| format!("{flow:.3}"));
         println!(
             "{:16} {:>6} {flow:>7.3} {:>7.3} {peer:>7} {:>6.0} {given_up:>8} {:>8.2} {:>8.2}",
             problem.name,

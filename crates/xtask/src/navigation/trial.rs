@@ -3,12 +3,11 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use ron_tree::Problem as Broken;
-use thiserror::Error;
+use experiments::Failure;
 use usar_sim::event::Event;
 use usar_sim::invariant::RARE_OVERLAP_M;
 use usar_sim::record::Status;
-use usar_sim::scenario::{LayoutError, Row, Scenario, ScenarioError, ScenarioFile};
+use usar_sim::scenario::{Row, Scenario, ScenarioFile};
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::stage::Stage;
 use usar_sim::world::World;
@@ -32,7 +31,7 @@ pub struct Outcome {
     pub limit_s: f64,
     /// Time when the last robot arrived or gave up, or the limit, in seconds.
     pub time_s: f64,
-    /// Number of goals given up as unreachable.
+    /// Number of goals given up, as unreachable or because their robots came no nearer.
     pub given_up: u32,
     /// Number of new touches, for each robot.
     pub touches: f64,
@@ -53,45 +52,6 @@ impl Outcome {
     }
 }
 
-/// Why a problem has no trial.
-#[derive(Debug, Error)]
-pub enum TrialError {
-    /// The text of the instance is no scenario.
-    #[error(transparent)]
-    Text(#[from] ScenarioError),
-    /// A change cannot be set.
-    #[error(transparent)]
-    Change(#[from] Box<Broken>),
-    /// The changes break rules of scenarios.
-    #[error("{broken:?}")]
-    Rules {
-        /// The broken rules.
-        broken: Vec<Broken>,
-    },
-    /// The world has no room for something that is sampled.
-    #[error(transparent)]
-    Layout(#[from] LayoutError),
-    /// A robot does not arrive even alone.
-    #[error("robot {robot} does not arrive although it is alone")]
-    Lost {
-        /// Number of the robot.
-        robot: u32,
-    },
-    /// A robot cannot be run alone.
-    #[error("{problem}, seed {seed}: {error}")]
-    Alone {
-        /// Name of the problem.
-        problem: &'static str,
-        /// The seed.
-        seed: u64,
-        /// Why.
-        error: Box<Self>,
-    },
-    /// A world of errands has a question about groups.
-    #[error("a world of errands asks nothing")]
-    Asks,
-}
-
 /// Fields of the scenario to set, with their values.
 pub type Changes = [(String, String)];
 
@@ -99,31 +59,31 @@ pub type Changes = [(String, String)];
 ///
 /// # Errors
 /// A change that cannot be set, or a world in which a robot does not arrive even alone.
-pub fn run(problem: &Problem, seed: u64, changes: &Changes) -> Result<Outcome, TrialError> {
+pub fn run(problem: &Problem, seed: u64, changes: &Changes) -> Result<Outcome, Failure> {
     let path = format!("{}.ron", problem.name);
     let text = problem.text(seed);
-    let scenario = Scenario::parse(&text, Path::new(&path))?;
+    let scenario = Scenario::parse(&text, Path::new(&path)).map_err(Failure::run)?;
     let mut file = (*scenario).clone();
     for (field, value) in changes {
-        file.set(field, value)?;
+        file.set(field, value).map_err(Failure::run)?;
     }
     let alone = |errand: usize| {
-        let failed = |error| TrialError::Alone { problem: problem.name, seed, error: Box::new(error) };
+        let failed = |error| Failure::run(format!("{}, seed {seed}: {error}", problem.name));
         alone(&file, errand, seed).map_err(failed)
     };
-    let free: Vec<f64> = (0..file.errands.len()).map(alone).collect::<Result<_, TrialError>>()?;
+    let free: Vec<f64> = (0..file.errands.len()).map(alone).collect::<Result<_, Failure>>()?;
     let limit_s = 5.0 * free.iter().copied().fold(0.0, f64::max) + 30.0;
     file.duration_s = limit_s;
     together(file, seed, free.iter().sum())
 }
 
-fn simulation(file: ScenarioFile, seed: u64) -> Result<Simulation, TrialError> {
-    let scenario = Scenario::try_from(file).map_err(|broken| TrialError::Rules { broken })?;
-    Ok(Simulation::new(&scenario, seed)?)
+fn simulation(file: ScenarioFile, seed: u64) -> Result<Simulation, Failure> {
+    let scenario = Scenario::try_from(file).map_err(|broken| Failure::run(format!("{broken:?}")))?;
+    Simulation::new(&scenario, seed).map_err(Failure::run)
 }
 
 /// Time that a robot needs for its errand alone, in seconds.
-fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, TrialError> {
+fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, Failure> {
     let mut file = file.clone();
     let mut errand = file.errands.swap_remove(errand);
     let robot: Row = file.team.swap_remove(errand.robot as usize);
@@ -135,11 +95,11 @@ fn alone(file: &ScenarioFile, errand: usize, seed: u64) -> Result<f64, TrialErro
             return Ok(simulation.time_s());
         }
     }
-    Err(TrialError::Lost { robot: id })
+    Err(Failure::run(format!("robot {id} does not arrive although it is alone")))
 }
 
 /// Runs all robots together, until the last one has arrived or given up.
-fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, TrialError> {
+fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, Failure> {
     let limit_s = file.duration_s;
     let goals: Vec<u32> = file.errands.iter().map(|errand| errand.robot).collect();
     let mut simulation = simulation(file, seed)?.checked();
@@ -157,12 +117,14 @@ fn together(file: ScenarioFile, seed: u64, free_s: f64) -> Result<Outcome, Trial
         match advance {
             Advance::Running => {}
             Advance::Over(status) => break matches!(status, Status::Failed(_)),
-            Advance::Asks(_) => return Err(TrialError::Asks),
+            Advance::Asks(_) => return Err(Failure::run("a world of errands asks nothing")),
         }
         for event in simulation.events() {
             match event {
                 Event::ErrandDone { robot } => arrivals[robot.index()] = Some(simulation.time_s()),
-                Event::Unreachable { robot, .. } => given_up[robot.index()] = Some(simulation.time_s()),
+                Event::Unreachable { robot, .. } | Event::CutOff { robot, .. } => {
+                    given_up[robot.index()] = Some(simulation.time_s());
+                }
                 _ => {}
             }
         }

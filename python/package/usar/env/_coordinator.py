@@ -14,6 +14,7 @@ from gymnasium.utils import seeding
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
+from .._results import MOST_THREADS, counted
 from .._types import Question
 from .._usar import Scenario, Simulation, advance_all
 from ._groups import settled
@@ -21,6 +22,7 @@ from ._view import View
 
 Observation = dict[str, numpy.typing.NDArray[Any]]
 Reward = Sequence[float]
+MOST_TRIALS = 1_000_000  # as in a sweep
 
 
 class Trial:
@@ -34,12 +36,19 @@ class Trial:
         self.question: Optional[Question] = None
         self._totals = numpy.zeros(3)
 
-    def decide(self, wishes: Any) -> list[int]:
-        """Send the members of the question to tasks; return those that were moved."""
+    def asked(self, wishes: Any) -> dict[int, int]:
+        """The tasks that the members of the question wish, once they are checked."""
         assert self.question is not None, "the trial is over: reset it"
+        if len(wishes) != self.view.robots:
+            raise ValueError(f"wishes must be of all {self.view.robots} robots, found {len(wishes)}")
         asked = {member["id"]: int(wishes[member["id"]]) for member in self.question["members"]}
         if unknown := {robot: task for robot, task in asked.items() if not 0 <= task < self.view.tasks}:
             raise ValueError(f"wishes must be tasks from 0 to {self.view.tasks - 1}, found {unknown}")
+        return asked
+
+    def decide(self, asked: dict[int, int]) -> list[int]:
+        """Send the members of the question to tasks; return those that were moved."""
+        assert self.question is not None
         groups, moved = settled(self.question, asked)
         self.simulation.assign(groups)
         return moved
@@ -120,7 +129,7 @@ class Coordinator(gymnasium.Env[Observation, numpy.typing.NDArray[Any]]):
     ) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Answer the question that waits."""
         assert self._trial is not None, "reset begins a trial"
-        moved = self._trial.decide(action)
+        moved = self._trial.decide(self._trial.asked(action))
         reward = self._trial.go_on()
         return self._trial.observation(), reward, *self._trial.ends, self._trial.info(moved)
 
@@ -135,8 +144,9 @@ class Vector(VectorEnv[Observation, numpy.typing.NDArray[Any], numpy.typing.NDAr
     metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": []}
 
     def __init__(self, scenario: Scenario, n: int, threads: Optional[int] = None, reward: Reward = (1, 0, 0)) -> None:
-        self._view, self._reward, self.num_envs = View(scenario), reward, n
-        self._threads = threads or os.cpu_count() or 1
+        self._view, self._reward, self.num_envs = View(scenario), reward, counted("n", n, MOST_TRIALS)
+        cores = min(os.cpu_count() or 1, MOST_THREADS)
+        self._threads = counted("threads", cores if threads is None else threads, MOST_THREADS)
         self.single_observation_space, self.single_action_space = _spaces(self._view)
         self.observation_space = batch_space(self.single_observation_space, n)
         self.action_space = batch_space(self.single_action_space, n)
@@ -155,7 +165,9 @@ class Vector(VectorEnv[Observation, numpy.typing.NDArray[Any], numpy.typing.NDAr
         if seed is None or isinstance(seed, (int, numpy.integer)):
             seeds: list[Optional[int]] = [None if seed is None else int(seed) + at for at in range(self.num_envs)]
         else:
-            seeds = list(seed)
+            seeds = [None if one is None else int(one) for one in seed]
+            if len(seeds) != self.num_envs:
+                raise ValueError(f"seed must be one, or {self.num_envs} in a list, found {len(seeds)}")
         self._draws = [
             draws if seed is None else seeding.np_random(seed)[0]
             for seed, draws in zip(seeds, self._draws)
@@ -171,13 +183,17 @@ class Vector(VectorEnv[Observation, numpy.typing.NDArray[Any], numpy.typing.NDAr
         self, actions: numpy.typing.NDArray[Any]
     ) -> tuple[Observation, Any, Any, Any, dict[str, Any]]:
         """Answer the questions that wait; where a trial was over, begin the next one instead."""
+        if len(actions) != self.num_envs:
+            raise ValueError(f"actions must be of all {self.num_envs} trials, found {len(actions)}")
         begun = self._is_over.copy()
+        goes_on = zip(self._trials, actions, begun)
+        asked = [{} if is_over else trial.asked(action) for trial, action, is_over in goes_on]
         moved: list[list[int]] = [[] for _ in self._trials]
         for at, trial in enumerate(self._trials):
             if begun[at]:
                 self._trials[at] = self._begin(at, None)
             else:
-                moved[at] = trial.decide(actions[at])
+                moved[at] = trial.decide(asked[at])
         advance_all([trial.simulation for trial in self._trials], self._threads)
         rewards = numpy.array([trial.go_on() for trial in self._trials])
         ends = numpy.array([trial.ends for trial in self._trials])

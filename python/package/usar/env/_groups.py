@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import permutations
 
 from .._types import Question
 
@@ -42,5 +41,16 @@ def _sizes(rule: str, members: list[int], wished: list[int]) -> list[int]:
         return wished
     if rule == "Binding" or wished == members:
         return members
-    moves = lambda sizes: sum(max(0, has - size) for has, size in zip(wished, sizes))  # noqa: E731
-    return list(min(dict.fromkeys(permutations(members)), key=moves))
+    left, sizes = members.copy(), []
+    for task in range(len(wished)):
+        sizes.append(min(left, key=lambda size: _fewest_moves(wished[task:], left, size)))
+        left.remove(sizes[-1])
+    return sizes
+
+
+def _fewest_moves(wished: list[int], parts: list[int], first: int) -> int:
+    """The moves if the first task gets this part: larger parts go where more robots wish to be."""
+    others = sorted(parts)
+    others.remove(first)
+    pairs = [(wished[0], first), *zip(sorted(wished[1:]), others)]
+    return sum(max(0, has - size) for has, size in pairs)

@@ -47,7 +47,7 @@ class Robots(Agents[Observation, int]):
         """Answer the question that waits."""
         trial = self._trial
         assert trial is not None, "reset begins a trial"
-        moved = trial.decide([actions.get(agent, 0) for agent in self.possible_agents])
+        moved = trial.decide(trial.asked([actions.get(agent, 0) for agent in self.possible_agents]))
         reward = trial.go_on()
         return self._stepped(self._observations(trial), reward, trial.ends, self._infos(moved))
 

@@ -20,6 +20,9 @@ NEAREST = 5
 class Velocities(Agents[Array, Array]):
     """Robots driven at `hz`, on the physics of the simulator.
 
+    Robots decide on their velocities 10 times a second, unless the scenario says otherwise
+    (`control_period_s`). `hz` is that rate if it is not given, and must divide it.
+
     An action is a velocity in shares of the top speed, in the plane. The mission goes on as always: `policy`
     groups the team, robots have goals and load and deliver when they get there; only the way there is the
     agents'. Right of way applies as the scenario says: `conflicts.resolver: None` is none, every other rule
@@ -31,23 +34,20 @@ class Velocities(Agents[Array, Array]):
 
     metadata: dict[str, Any] = {"name": "usar_velocities_v0", "render_modes": []}
 
-    def __init__(self, scenario: Scenario, policy: Policy = "DIS", hz: float = 10.0) -> None:
-        if not 0.0 < hz <= 1.0 / scenario.step_s:
-            raise ValueError(f"hz must be above 0 and at most {1.0 / scenario.step_s:g}, found {hz}")
-        self._steps = round(1.0 / (hz * scenario.step_s))
-        self._scenario, self._policy = scenario, policy
+    def __init__(self, scenario: Scenario, policy: Policy = "DIS", hz: Optional[float] = None) -> None:
+        self._scenario, self._policy, self._hz = scenario, policy, hz
+        self._trial, self._steps = self._begin(1)
         near = [f"near_{at}_{axis}" for at in range(NEAREST) for axis in "xy"]
         self.feature_names = ["x", "y", "vx", "vy", "way_x", "way_y", "energy", "hp", *near]
         seen = spaces.Box(-1.0, 1.0, (len(self.feature_names),), numpy.float32)
         names = agents(scenario, first_question(scenario))
         super().__init__(names, seen, spaces.Box(-1.0, 1.0, (2,), numpy.float32))
-        self._trial = Simulation(scenario, 1)
 
     def reset(
         self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None
     ) -> tuple[dict[str, Array], Infos]:
         """Begin the trial of a seed, or of one that is drawn."""
-        self._trial = Simulation(self._scenario, self._seed(seed))
+        self._trial, self._steps = self._begin(self._seed(seed))
         self._trial.until_asked()
         self._answer()
         self.agents = self.possible_agents[:]
@@ -65,6 +65,21 @@ class Velocities(Agents[Array, Array]):
         ends = trial.status not in (None, "completed"), trial.status == "completed"
         infos: Infos = {agent: {} for agent in self.agents}
         return self._stepped(self._observations(), float(trial.totals[0] - before), ends, infos)
+
+    def _begin(self, seed: int) -> tuple[Simulation, int]:
+        """A trial, and the steps of a period. A period is a number of times that robots decide."""
+        trial = Simulation(self._scenario, seed)
+        most = 1.0 / trial.control_period_s
+        hz = most if self._hz is None else self._hz
+        if not hz >= 1.0 / self._scenario.duration_s:
+            raise ValueError(f"hz must be at least 1 / duration_s, found {hz:g}")
+        times = max(1, round(most / hz))
+        if abs(most / hz - times) > 1e-5 * times:
+            below = int(most / hz)
+            near = " or ".join(f"{most / count:g}" for count in sorted({max(1, below), below + 1}))
+            found = f"found {hz:g}; nearby is {near}"
+            raise ValueError(f"hz must be {most:g}, at which robots decide, or divide it, {found}")
+        return trial, round(times * trial.control_period_s / self._scenario.step_s)
 
     def _answer(self) -> None:
         """Answer the question that waits, if there is one."""

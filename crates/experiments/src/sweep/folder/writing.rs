@@ -37,7 +37,7 @@ impl Folder {
     /// Adds trials. They are on disk when this returns.
     ///
     /// # Errors
-    /// The disk does not take them, or another process has taken over the folder.
+    /// The disk does not take them.
     pub fn add(&mut self, outcomes: &[Outcome]) -> Result<(), Failure> {
         let Store::Journal(journal) = &mut self.store else {
             return Err(Failure::run("a finished sweep takes no trials"));

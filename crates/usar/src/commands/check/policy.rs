@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use programs::questions::{question, with_evidence};
-use rne_core::{Asked, Assignment, Basis, PolicyError, Question, Session, TrialStart};
 use serde::Serialize;
+use teaming::{Asked, Assignment, Basis, PolicyError, Question, Session, TrialStart};
 
 use crate::arguments::parse_policy;
 use crate::prelude::*;
@@ -39,12 +39,7 @@ struct Breach {
 }
 
 /// Asks a policy random questions, and tells what is wrong with its answers and how long they take.
-pub(super) fn check(
-    text: &str,
-    registry: &Registry,
-    is_json: bool,
-    out: &mut dyn Write,
-) -> Result<(), Failure> {
+pub(super) fn check(text: &str, registry: &Registry, is_json: bool) -> Result<Report, Failure> {
     let spec = parse_policy("--policy", text, registry)?;
     if !spec.is_of_question() {
         refuse!(
@@ -85,7 +80,7 @@ pub(super) fn check(
     let [median_ms, p95_ms, longest_ms] = [0.5, 0.95, 1.0].map(part);
     let (policy, questions) = (spec.label.clone(), QUESTIONS);
     let checked = Checked { policy, questions, breaches, differing, start_s, median_ms, p95_ms, longest_ms };
-    if is_json { print_json(&checked) } else { print(out, &checked) }?;
+    if is_json { Report::json(&checked)? } else { told(&checked) }.print()?;
     verdict(&checked)
 }
 
@@ -107,24 +102,24 @@ fn timed(
     (checked, took)
 }
 
-fn print(out: &mut dyn Write, checked: &Checked) -> Result<(), Failure> {
+fn told(checked: &Checked) -> Report {
     let Checked { policy, questions, breaches, differing, start_s, median_ms, p95_ms, longest_ms } = checked;
-    writeln!(
-        out,
-        "{policy}: {questions} random questions; against the rules {}, answered otherwise by a second \
-         session {}",
-        breaches.len(),
-        differing.len()
-    )?;
-    Ok(writeln!(
-        out,
-        "started in {start_s:.2} s; a decision took {median_ms:.3} ms (median), 95 % at most {p95_ms:.3} ms, \
-         the longest {longest_ms:.3} ms"
-    )?)
+    Report::of([
+        format!(
+            "{policy}: {questions} random questions; against the rules {}, answered otherwise by a second \
+             session {}",
+            breaches.len(),
+            differing.len()
+        ),
+        format!(
+            "started in {start_s:.2} s; a decision took {median_ms:.3} ms (median), 95 % at most {p95_ms:.3} ms, \
+             the longest {longest_ms:.3} ms"
+        ),
+    ])
 }
 
 /// Fails with the first answers that are wrong.
-fn verdict(checked: &Checked) -> Result<(), Failure> {
+fn verdict(checked: &Checked) -> Result<Report, Failure> {
     let Checked { policy, breaches, differing, .. } = checked;
     let mut sentences: Vec<String> = Vec::new();
     for Breach { question_seed, message, .. } in breaches.iter().take(SHOWN) {
@@ -136,5 +131,5 @@ fn verdict(checked: &Checked) -> Result<(), Failure> {
              two ways"
         ));
     }
-    if sentences.is_empty() { Ok(()) } else { Err(Failure::run(sentences.join("\n"))) }
+    if sentences.is_empty() { Ok(Report::default()) } else { Err(Failure::run(sentences.join("\n"))) }
 }

@@ -3,7 +3,7 @@
 use experiments::sweep::merge::Merge;
 use experiments::sweep::names::{is_sweeps, sweeps_in};
 
-use crate::commands::sweep::print;
+use crate::commands::sweep::told;
 use crate::input::check_trials;
 use crate::prelude::*;
 
@@ -11,7 +11,7 @@ use crate::prelude::*;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Refuses shards of different sweeps or programs, shards that disagree about a trial, and a sum of shards that \
-lacks a trial.
+lacks a trial: then it says which shards are missing, and the commands that run them.
 
 Example:
   usar sweep scenarios/sweeps/energy.ron --shard 1/2     (on one machine)
@@ -28,14 +28,14 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         stop_on_signals();
         let whole =
             Merge::of(&shards_in(&self.folders), registry)?.write_to(&self.out, &STOP, &mut |note| {
                 tell(format_args!("note: {note}"));
             })?;
-        print(out, &whole)?;
-        check_trials([&whole])
+        told(&whole).print()?;
+        check_trials([&whole]).map(|()| Report::default())
     }
 }
 

@@ -1,83 +1,51 @@
-//! Sequences of pictures of a trial.
+//! Pictures of a trial one after the other, as files.
 
-use pictures::{Look, Picture, PictureError, Width, moment};
+use indicatif::ProgressBar;
+use pictures::{Picture, PictureError, Width, moment};
 use recording::Recording;
 
-use super::trial::RecordedArguments;
-use crate::arguments::LookArguments;
+use super::Arguments;
+use super::trial::frame_at;
+use crate::arguments::progress_bar;
 use crate::prelude::*;
 
-/// Largest number of pictures in a sequence.
+/// The progress of fewer pictures is not told.
+const TOLD: usize = 100;
+
+/// Largest number of pictures in a row.
 const MOST: usize = 100_000;
 
-/// The trial, and which of its moments are drawn.
-#[derive(Debug, Args)]
-pub(super) struct FilmArguments {
-    #[command(flatten)]
-    pub(super) recorded: RecordedArguments,
-    /// Where the pictures of --every begin, in seconds of simulated time
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, requires = "every")]
-    begin: f64,
-    /// Where the pictures of --every end, in seconds of simulated time [default: the end of the trial]
-    #[arg(long, value_name = "SECONDS", requires = "every")]
-    end: Option<f64>,
-    #[command(flatten)]
-    pub(super) look: LookArguments,
-}
-
-/// A sequence of pictures to draw.
-pub(super) struct Row<'r> {
-    recording: &'r Recording,
-    pub(super) numbers: Vec<usize>,
-    look: Look,
-}
-
-impl Row<'_> {
-    /// The picture of a frame.
-    pub(super) fn picture(&self, number: usize) -> Result<Picture, Failure> {
-        if is_stopped() {
-            return Err(Failure::Interrupted("stopped; the pictures are not complete".to_owned()));
-        }
-        let last = self.recording.frames() - 1; // of trials side by side, one may end before the other
-        moment(self.recording, number.min(last), &self.look).map_err(failed)
-    }
-}
-
-pub(super) fn failed(error: PictureError) -> Failure {
-    match error {
-        PictureError::Gif(_) => Failure::storage(error),
-        _ => Failure::input(error),
-    }
-}
-
-/// The frame at a time of the recording.
-pub(super) fn frame_at(recording: &Recording, flag: &str, time_s: f64) -> Result<usize, Failure> {
-    let header = &recording.header;
-    let [first, last] = [0, recording.frames() - 1].map(|frame| header.time_s_of(frame));
-    if !(first..=last + 1e-6).contains(&time_s) {
-        let rule = format!("must be from {first} to {last}, the times of the trial, found {time_s}");
-        refuse!("{flag}: {rule}");
-    }
-    Ok(recording.frame_at(time_s))
-}
-
-impl FilmArguments {
-    /// The pictures of --every.
-    pub(super) fn row<'r>(&self, recording: &'r Recording) -> Result<Row<'r>, Failure> {
+impl Arguments {
+    /// Writes pictures to files, whose names have the number of the picture.
+    pub(super) fn draw_series(&self, registry: &Registry) -> Result<Report, Failure> {
+        let file = |number| self.picture_file(&numbered(&self.to, number)?);
+        file(0)?;
         stop_on_signals();
-        let look = self.look.look(Width::Pixels(640));
-        Ok(Row { numbers: self.numbers(recording)?, recording, look })
+        let recording = self.recording(registry)?;
+        let numbers = self.numbers(&recording)?;
+        let files = (0..numbers.len()).map(file).collect::<Result<Vec<_>, Failure>>()?;
+        let bar = progress(files.len());
+        for (file, number) in files.iter().zip(&numbers) {
+            file.write(&self.picture(&recording, *number)?)?;
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        Ok(format!("{} pictures: {}", numbers.len(), self.to.display()).into())
     }
 
     /// Numbers of the frames that are drawn.
-    fn numbers(&self, recording: &Recording) -> Result<Vec<usize>, Failure> {
+    pub(super) fn numbers(&self, recording: &Recording) -> Result<Vec<usize>, Failure> {
         let last = recording.header.time_s_of(recording.frames() - 1);
         let from = self.begin.max(recording.header.time_s_of(0));
-        let (every, to) = (self.recorded.every.unwrap_or(1.0), self.end.unwrap_or(last));
+        let (every, to) = (self.every.unwrap_or(1.0), self.end.unwrap_or(last));
         frame_at(recording, "--begin", from)?;
         frame_at(recording, "--end", to)?;
         if to < from {
             refuse!("--end: must not be before --begin ({from}), found {to}");
+        }
+        let between = recording.header.time_s_of(1) - recording.header.time_s_of(0);
+        if every < between - 1e-9 {
+            refuse!("--every: must be at least {between} s, the time between two frames, found {every}");
         }
         let count = ((to - from) / every + 1e-6).floor() as usize + 1;
         if count > MOST {
@@ -85,4 +53,37 @@ impl FilmArguments {
         }
         Ok((0..count).map(|i| recording.frame_at(from + i as f64 * every)).collect())
     }
+
+    /// The picture of a frame.
+    pub(super) fn picture(&self, recording: &Recording, number: usize) -> Result<Picture, Failure> {
+        if is_stopped() {
+            return Err(Failure::Interrupted("stopped; the pictures are not complete".to_owned()));
+        }
+        let last = recording.frames() - 1; // of trials side by side, one may end before the other
+        moment(recording, number.min(last), &self.look.look(Width::Pixels(640))).map_err(failed)
+    }
+}
+
+/// The path of a picture of a series: `%04d` in it is the number with four digits.
+fn numbered(path: &Path, number: usize) -> Result<PathBuf, Failure> {
+    let text = path.to_string_lossy();
+    let mut places = (1..10).map(|width| (width, format!("%0{width}d")));
+    match places.find(|(_, place)| text.matches(place).count() == 1 && text.matches('%').count() == 1) {
+        Some((width, place)) => Ok(text.replace(&place, &format!("{number:0width$}")).into()),
+        None => refuse!(
+            "--to: the pictures of --every need one place for a number, as in 'x-%04d.png', found {text}"
+        ),
+    }
+}
+
+pub(super) fn failed(error: PictureError) -> Failure {
+    match error {
+        #[cfg(feature = "pictures")]
+        PictureError::Gif(_) => Failure::storage(error),
+        _ => Failure::input(error),
+    }
+}
+
+pub(super) fn progress(count: usize) -> ProgressBar {
+    progress_bar(count, "pictures", 1, count < TOLD)
 }

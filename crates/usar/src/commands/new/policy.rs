@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
         let is_first = self.name.starts_with(|c: char| c.is_ascii_lowercase());
         let is_other = |c: char| !(c.is_ascii_lowercase() || c.is_ascii_digit() || "-_".contains(c));
         if !is_first || self.name.contains(is_other) {
@@ -51,13 +51,15 @@ impl Arguments {
             made.map_err(|error| trouble("NAME", parent, &error))?;
             let written = create_new("NAME", &path)?.write_all(file.text.as_bytes());
             written.map_err(|error| trouble("NAME", &path, &error))?;
-            writeln!(out, "{}", path.display())?;
+            Report::from(path.display().to_string()).print()?;
         }
         let name = folder.join(&self.name).display().to_string();
         let policy = self.lang.policy(&self.name, &name);
-        writeln!(out, "\nTest it, and run it beside others:")?;
-        writeln!(out, "  {}", self.lang.test(&name))?;
-        writeln!(out, "  usar check --policy '{policy}'")?;
-        Ok(writeln!(out, "  usar sweep paper --policies 'ENG,{policy}'")?)
+        Ok(Report::of([
+            "\nTest it, and run it beside others:".to_owned(),
+            format!("  {}", self.lang.test(&name)),
+            format!("  usar check --policy '{policy}'"),
+            format!("  usar sweep paper --policies 'ENG,{policy}'"),
+        ]))
     }
 }

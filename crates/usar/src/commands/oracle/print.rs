@@ -1,16 +1,15 @@
 //! The output of `usar oracle`.
 
 use experiments::oracle::{Coverage, Evaluation, Objective, Outcome, Standing, Survey};
-use reports::table::{Table, headed, right};
-use rne_core::Assignment;
 use serde_json::{Value, json};
+use teaming::Assignment;
 
 use super::{Answer, Asked, coverage_in_words};
 use crate::commands::fork::ids;
 use crate::prelude::*;
 
-pub(super) fn json(asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
-    print_json(&json!({
+pub(super) fn json(asked: &Asked, answers: &[Answer]) -> Result<Report, Failure> {
+    Report::json(&json!({
         "scenario": asked.trial.scenario.name,
         "seed": asked.trial.seed,
         "base": asked.trial.spec.label,
@@ -55,53 +54,41 @@ fn answer_json(asked: &Asked, Answer { then, survey }: &Answer) -> Value {
     })
 }
 
-pub(super) fn text(
-    out: &mut dyn Write,
-    asked: &Asked,
-    answers: &[Answer],
-    top: usize,
-) -> Result<(), Failure> {
-    writeln!(
-        out,
+pub(super) fn text(asked: &Asked, answers: &[Answer], top: usize) -> Report {
+    let mut out = Report::from(format!(
         "{}, seed {}, round {} at {:.1} s; {} decided the rounds before",
         asked.trial.scenario.name,
         asked.trial.seed,
         asked.question.round,
         asked.time_s,
         asked.trial.spec.label
-    )?;
-    answers.iter().try_for_each(|answer| print_answer(out, asked, answer, top))
+    ));
+    answers.iter().for_each(|answer| tell_answer(&mut out, asked, answer, top));
+    out
 }
 
-fn print_answer(out: &mut dyn Write, asked: &Asked, answer: &Answer, top: usize) -> Result<(), Failure> {
-    let Answer { then, survey } = answer;
+fn tell_answer(out: &mut Report, asked: &Asked, Answer { then, survey }: &Answer, top: usize) {
     let objective = &asked.objective;
     let end = then.as_ref().map_or("the end of the round".to_owned(), |then| {
         format!("the end of the trial, in which {} goes on", then.label)
     });
-    writeln!(
-        out,
-        "played to {end}, and counted from {:.1} s on: {}",
-        asked.time_s,
-        coverage_in_words(survey)
-    )?;
+    let coverage = coverage_in_words(survey);
+    out.say(format!("played to {end}, and counted from {:.1} s on: {coverage}", asked.time_s));
     let Some([best, worst]) = survey.range(objective) else {
-        return Ok(writeln!(out, "{objective} is undefined for all of them")?);
+        return out.say(format!("{objective} is undefined for all of them"));
     };
     let better = if objective.is_cost() { "less" } else { "more" };
     let mean = survey.mean(objective).unwrap_or(best);
     let [best, worst, mean] = [best, worst, mean].map(short);
-    writeln!(out, "\n{objective}, {better} is better: best {best}, mean {mean}, worst {worst}")?;
+    out.say(format!("\n{objective}, {better} is better: best {best}, mean {mean}, worst {worst}"));
     if best == worst {
-        writeln!(
-            out,
+        out.say(
             "All of them come to the same, so that this metric tells nothing of the decision; --metric \
-             rescue_rate or --then POLICY may."
-        )?;
+             rescue_rate or --then POLICY may.",
+        );
     }
-    print_table(out, &ranking(asked, survey, top))?;
-    print_table(out, &choices(asked, survey))?;
-    Ok(())
+    out.show(ranking(asked, survey, top));
+    out.show(choices(asked, survey));
 }
 
 /// A number for a table: whole, or with two decimals.
@@ -109,29 +96,37 @@ fn short(value: f64) -> String {
     if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.2}") }
 }
 
-fn ranking(asked: &Asked, survey: &Survey, top: usize) -> Table {
+/// A table with these columns and the group of each task; everything is aligned on the right.
+fn grouped<'a, const N: usize>(
+    asked: &Asked,
+    columns: [&str; N],
+    rows: impl Iterator<Item = ([String; N], &'a Assignment)>,
+) -> Table {
     let tasks = asked.question.tasks.iter().map(|task| format!("{} group", task.name));
-    let header = ["rank", asked.objective.name(), "rescued", "energy", "time s"].map(str::to_owned);
-    let mut table = headed(header.into_iter().chain(tasks).collect::<Vec<_>>());
+    let row = |(cells, choice): ([String; N], &'a Assignment)| {
+        cells.into_iter().chain(choice.groups.iter().map(|group| ids(group))).map(right)
+    };
+    Table::of(columns.map(str::to_owned).into_iter().chain(tasks), rows.map(row))
+}
+
+fn ranking(asked: &Asked, survey: &Survey, top: usize) -> Table {
     let ranked = survey.ranked(&asked.objective);
     let last = ranked.len().saturating_sub(1);
-    for (place, found) in ranked.iter().enumerate().filter(|(place, _)| *place < top || *place == last) {
+    let row = |place: usize, found: &Evaluation| {
         let standing = survey.standing(&asked.objective, &found.assignment);
         let rank = standing.map_or(place + 1, |standing| standing.rank);
         let rank = if place == last && rank > 1 { format!("{rank} (the worst)") } else { rank.to_string() };
-        let total = found.outcome.total();
-        let value = asked.objective.value(&found.outcome).map_or("-".to_owned(), short);
-        let cells = [
-            rank,
-            value,
-            rescued(&found.outcome),
-            format!("{:.1}", total.energy),
-            format!("{:.1}", found.outcome.duration_s),
-        ];
-        let groups = found.assignment.groups.iter().map(|group| ids(group));
-        table.add_row(cells.into_iter().chain(groups).map(|cell| right(&cell)));
-    }
-    table
+        let outcome = &found.outcome;
+        let value = or_dash(asked.objective.value(outcome), short);
+        [rank, value, rescued(outcome), tenths(outcome.total().energy), tenths(outcome.duration_s)]
+    };
+    let shown = ranked.iter().enumerate().filter(|(place, _)| *place < top || *place == last);
+    let columns = ["rank", asked.objective.name(), "rescued", "energy", "time s"];
+    grouped(asked, columns, shown.map(|(place, found)| (row(place, found), &found.assignment)))
+}
+
+fn tenths(value: f64) -> String {
+    format!("{value:.1}")
 }
 
 /// The number of all rescuees, and in brackets the number for each task.
@@ -141,42 +136,33 @@ fn rescued(outcome: &Outcome) -> String {
 }
 
 fn choices(asked: &Asked, survey: &Survey) -> Table {
-    let header = ["policy", "rank", "regret", asked.objective.name()].map(str::to_owned);
-    let tasks = asked.question.tasks.iter().map(|task| format!("{} group", task.name));
-    let mut table = headed(header.into_iter().chain(tasks).collect::<Vec<_>>());
     let count = survey.evaluations.len();
-    for (policy, choice) in &asked.choices {
-        let cells = match survey.standing(&asked.objective, choice) {
-            Some(Standing { rank, regret, value }) => {
-                [format!("{rank} of {count}"), short(regret), short(value)]
-            }
-            None => ["-", "-", "-"].map(str::to_owned),
-        };
-        let groups = choice.groups.iter().map(|group| ids(group));
-        let cells = std::iter::once(policy.clone()).chain(cells).chain(groups);
-        table.add_row(cells.map(|cell| right(&cell)));
-    }
-    table
+    let row = |(policy, choice): &(String, Assignment)| match survey.standing(&asked.objective, choice) {
+        Some(Standing { rank, regret, value }) => {
+            [policy.clone(), format!("{rank} of {count}"), short(regret), short(value)]
+        }
+        None => [policy, "-", "-", "-"].map(str::to_owned),
+    };
+    let columns = ["policy", "rank", "regret", asked.objective.name()];
+    grouped(asked, columns, asked.choices.iter().map(|choice| (row(choice), &choice.1)))
 }
 
 /// Writes all outcomes as CSV, one on each line, the best first.
 pub(super) fn write_csv(path: &Path, asked: &Asked, answers: &[Answer]) -> Result<(), Failure> {
     let tasks: Vec<&str> = asked.question.tasks.iter().map(|task| task.name.as_str()).collect();
     let of_tasks = |what: &str| tasks.iter().map(|task| format!("{what}_{task}")).collect::<Vec<_>>();
-    let mut header =
-        ["then", "rank", asked.objective.name(), "duration_s", "is_cut"].map(str::to_owned).to_vec();
-    for what in ["group", "rescued", "secured", "energy", "hp"] {
-        header.extend(of_tasks(what));
-    }
-    header.extend(["energy_ungrouped", "hp_ungrouped"].map(str::to_owned));
-    let mut rows = vec![header];
+    let before = ["then", "rank", asked.objective.name(), "duration_s", "is_cut"].map(str::to_owned);
+    let each = ["group", "rescued", "secured", "energy", "hp"].into_iter().flat_map(of_tasks);
+    let after = ["energy_ungrouped", "hp_ungrouped"].map(str::to_owned);
+    let header = before.into_iter().chain(each).chain(after);
+    let mut rows = Vec::new();
     for Answer { then, survey } in answers {
         for found in survey.ranked(&asked.objective) {
             let then = then.as_ref().map_or(String::new(), |then| then.label.clone());
             rows.push([vec![then], csv_row(found, survey, &asked.objective)].concat());
         }
     }
-    Destination::new("--csv", path, true)?.write(&csv_of(rows)?)
+    Destination::new("--csv", path, true)?.write(tables::csv(header, rows)?.as_bytes())
 }
 
 fn csv_row(found: &Evaluation, survey: &Survey, objective: &Objective) -> Vec<String> {

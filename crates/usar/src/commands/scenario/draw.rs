@@ -36,8 +36,8 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
-        let file = PictureFile::of(&self.out, &["svg", "png"], self.look.picture.replace)?;
+    pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
+        let file = PictureFile::of("--out", &self.out, &["svg", "png"], self.look.picture.replace)?;
         let scenario = self.set.load(&self.file)?;
         let seed = match self.seed {
             Some(seed) => seed,
@@ -54,6 +54,6 @@ impl Arguments {
         };
         let drawn = Plan { title: &title, world: &world, errands: &scenario.errands, first_sampled };
         file.write(&plan(&drawn, &self.look.look(Width::Pixels(800))))?;
-        Ok(writeln!(out, "{}", self.out.display())?)
+        Ok(self.out.display().to_string().into())
     }
 }

@@ -23,27 +23,24 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
         // All files are read before the first one is written.
         let texts = self.files.iter().map(|file| laid_out(file)).collect::<Result<Vec<_>, _>>()?;
         let mut others = 0;
         for (file, text) in self.files.iter().zip(texts) {
             let Some(text) = text else { continue };
             others += 1;
-            if self.dry_run {
-                writeln!(out, "{}: is laid out otherwise", file.display())?;
-            } else {
+            if !self.dry_run {
                 Destination::new("FILE", file, true)?.write(text.as_bytes())?;
-                writeln!(out, "{}: written", file.display())?;
             }
+            let what = if self.dry_run { "is laid out otherwise" } else { "written" };
+            Report::from(format!("{}: {what}", file.display())).print()?;
         }
         if self.dry_run && others > 0 {
-            return Err(Failure::run(format!(
-                "{others} of {} files; `usar scenario fmt` lays them out",
-                self.files.len()
-            )));
+            let all = self.files.len();
+            return Err(Failure::run(format!("{others} of {all} files; `usar scenario fmt` lays them out")));
         }
-        Ok(())
+        Ok(Report::default())
     }
 }
 

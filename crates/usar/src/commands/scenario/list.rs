@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 use experiments::metric::{Catalogue, Metric};
-use rne_core::Kind;
 use serde::Serialize;
+use teaming::Kind;
 use usar_sim::scenario::{RoleFile, RoleKind, Scenario};
 
 use crate::arguments::JsonArgument;
@@ -57,7 +57,7 @@ enum Of {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let listed = match (self.of, &self.path) {
             (Of::Scenarios, Some(path)) => scenarios(path)?,
             (Of::Scenarios, None) => carried()?,
@@ -67,9 +67,9 @@ impl Arguments {
             (Of::Metrics, _) => metrics(&self.scenario()?),
         };
         if self.json.json {
-            return print_json(&serde_json::json!({"listed": listed}));
+            return Report::json(&serde_json::json!({"listed": listed}));
         }
-        listed.iter().try_for_each(|one| Ok(writeln!(out, "{}\t{}", one.name, one.about)?))
+        Ok(Report::of(listed.iter().map(|one| format!("{}\t{}", one.name, one.about))))
     }
 
     /// The scenario that was named, or the paper's.

@@ -74,7 +74,7 @@ impl Source {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
         let scenario = self.set.load(&self.file)?;
         let tree = scenario.tree();
         let own = Source::read(&self.file)?;
@@ -82,7 +82,7 @@ impl Arguments {
         let set: Vec<String> = self.set.set.iter().filter_map(|set| canonical(&tree, set)).collect();
         let leaves = tree.leaves();
         let width = leaves.iter().map(|(path, _)| path.len()).max().unwrap_or_default();
-        let mut drawn = None;
+        let (mut drawn, mut out) = (None, Report::default());
         for (path, value) in &leaves {
             // A distribution is one value, even if it contains several numbers.
             let around =
@@ -103,9 +103,9 @@ impl Arguments {
                 from(&own).or_else(|| from(of_base?))
             };
             let origin = origin.unwrap_or_else(|| "default".to_owned());
-            writeln!(out, "{path:width$} = {value}  # {origin}")?;
+            out.say(format!("{path:width$} = {value}  # {origin}"));
         }
-        Ok(())
+        Ok(out)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use experiments::experiment::sweep_schema;
-use rne_core::{Decision, Question};
+use teaming::{Decision, Question};
 use usar_sim::scenario::scenario_schema;
 
 use crate::prelude::*;
@@ -36,17 +36,13 @@ enum Of {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
         let schema = match self.of {
-            Of::Scenario => scenario_schema(),
-            Of::Sweep => sweep_schema(),
-            Of::Question => return print(out, &schemars::schema_for!(Question)),
-            Of::Decision => return print(out, &schemars::schema_for!(Decision)),
+            Of::Scenario => serde_json::to_string_pretty(&scenario_schema()),
+            Of::Sweep => serde_json::to_string_pretty(&sweep_schema()),
+            Of::Question => serde_json::to_string_pretty(&schemars::schema_for!(Question)),
+            Of::Decision => serde_json::to_string_pretty(&schemars::schema_for!(Decision)),
         };
-        print(out, &schema)
+        Ok(schema.map_err(Failure::run)?.into())
     }
-}
-
-fn print(out: &mut dyn Write, schema: &impl serde::Serialize) -> Result<(), Failure> {
-    Ok(writeln!(out, "{}", serde_json::to_string_pretty(schema).map_err(Failure::run)?)?)
 }

@@ -11,6 +11,7 @@ use clap_complete::{ArgValueCompleter, CompletionCandidate, PathCompleter, Shell
 
 use crate::library;
 use crate::prelude::*;
+use crate::report::sentences;
 
 /// Print the completion script of a shell
 #[derive(Debug, Args)]
@@ -32,13 +33,14 @@ pub(crate) struct Arguments {
 pub(crate) const ASKED: &str = "USAR_COMPLETE";
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
         let shells = Shells::builtins();
         let shell = shells.completer(&self.shell.to_string());
         let shell = shell.ok_or_else(|| Failure::run("no script for this shell"))?;
-        let mut script = Vec::new();
-        shell.write_registration(ASKED, "usar", "usar", "usar", &mut script)?;
-        Ok(out.write_all(&script)?)
+        let mut out = sentences();
+        shell.write_registration(ASKED, "usar", "usar", "usar", &mut out)?;
+        out.flush()?;
+        Ok(Report::default())
     }
 }
 

@@ -5,6 +5,7 @@ use experiments::sweep::host::{HostRun, free_bytes};
 use serde::Serialize;
 
 use crate::arguments::{JsonArgument, default_jobs};
+use crate::builds::features;
 use crate::prelude::*;
 
 /// Number of bytes in the write test.
@@ -35,6 +36,7 @@ struct Findings {
     version: &'static str,
     commit: &'static str,
     compiler: String,
+    features: String,
     system: String,
     kernel: String,
     cpu: String,
@@ -85,6 +87,7 @@ impl Findings {
             version: env!("CARGO_PKG_VERSION"),
             commit: COMMIT,
             compiler: host.compiler,
+            features: features(),
             system: host.system,
             kernel: host.kernel,
             cpu: host.cpu,
@@ -96,42 +99,36 @@ impl Findings {
         }
     }
 
-    fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    fn told(&self) -> Report {
         let results = &self.results;
-        let mut line = |what: &str, told: String| writeln!(out, "{what:<10} {told}");
-        line("program", format!("usar {}, commit {}", self.version, self.commit))?;
-        line("compiler", self.compiler.clone())?;
-        line("system", format!("{}, kernel {}", self.system, self.kernel))?;
-        line("processor", format!("{}, {} logical cores", self.cpu, self.logical_cpus))?;
-        line("threads", format!("{}; --jobs sets another number", self.threads))?;
-        line("memory", format!("{} GiB", self.memory_gib))?;
-        line("works in", self.working_folder.display().to_string())?;
         let is = if results.exists { "exists" } else { "is made by the first sweep" };
-        line("results", format!("{}, which {is}", results.folder.display()))?;
         let can = if results.is_writable { "yes" } else { "no" };
-        line(
-            "writable",
-            results.trouble.as_ref().map_or(can.to_owned(), |trouble| format!("{can}: {trouble}")),
-        )?;
+        let trouble = results.trouble.as_ref();
         let gib = |bytes: u64| format!("{:.1} GiB", bytes as f64 / f64::from(1_u32 << 30));
-        line("free", results.free_bytes.map_or("unknown".to_owned(), gib))?;
-        Ok(())
+        let lines = [
+            ("program", format!("usar {}, commit {}", self.version, self.commit)),
+            ("compiler", self.compiler.clone()),
+            ("features", self.features.clone()),
+            ("system", format!("{}, kernel {}", self.system, self.kernel)),
+            ("processor", format!("{}, {} logical cores", self.cpu, self.logical_cpus)),
+            ("threads", format!("{}; --jobs sets another number", self.threads)),
+            ("memory", format!("{} GiB", self.memory_gib)),
+            ("works in", self.working_folder.display().to_string()),
+            ("results", format!("{}, which {is}", results.folder.display())),
+            ("writable", trouble.map_or(can.to_owned(), |trouble| format!("{can}: {trouble}"))),
+            ("free", results.free_bytes.map_or("unknown".to_owned(), gib)),
+        ];
+        Report::of(lines.map(|(what, told)| format!("{what:<10} {told}")))
     }
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, _: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
         let findings = Findings::of(&self.out);
-        if self.json.json {
-            print_json(&findings)?;
-        } else {
-            findings.print(out)?;
+        if self.json.json { Report::json(&findings)? } else { findings.told() }.print()?;
+        match findings.results.trouble {
+            None => Ok(Report::default()),
+            Some(trouble) => Err(Failure::storage(format!("results cannot be written: {trouble}"))),
         }
-        let trouble = findings
-            .results
-            .trouble
-            .into_iter()
-            .map(|trouble| Failure::storage(format!("results cannot be written: {trouble}")));
-        trouble.map(Err).next().unwrap_or(Ok(()))
     }
 }

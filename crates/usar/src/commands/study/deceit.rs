@@ -10,7 +10,7 @@ use experiments::oracle::Objective;
 use experiments::regret::StudyFolder;
 use experiments::sweep::folder::Folder;
 use reports::deceit_figures;
-use reports::table::{between, headed, mean, number, or_dash, right};
+use reports::table::{between, mean, number};
 use serde_json::json;
 
 use crate::arguments::{ProgressArguments, Selection, ShownArguments};
@@ -64,7 +64,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         if self.file.is_dir() {
             let chosen = self.selection.arguments().into_iter().next();
             let replay = self.replay.as_ref().map(|_| "--replay".to_owned());
@@ -73,69 +73,80 @@ impl Arguments {
             }
             let folder = read_sweep(&self.file, registry)?;
             Deceit::check(folder.experiment()).map_err(Failure::input_at(self.file.display()))?;
-            return self.print(&folder, out);
+            return self.told(&folder);
         }
         let experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
         Deceit::check(&experiment).map_err(Failure::input_at(self.file.display()))?;
         if let Some(folder) = &self.replay {
-            return self.replayed(folder, &experiment, out);
+            return self.replayed(folder, &experiment);
         }
         let named = Path::new("results").join(&experiment.name);
         let place = self.out.clone().unwrap_or(named);
-        self.print(&self.progress.finished(&place, experiment)?, out)
+        self.told(&self.progress.finished(&place, experiment)?)
     }
 
-    fn print(&self, folder: &Folder, out: &mut dyn Write) -> Result<(), Failure> {
+    fn told(&self, folder: &Folder) -> Result<Report, Failure> {
         let found = Deceit::of(folder)?;
         for (name, content) in deceit_figures(&found)? {
             NewFile::write(folder.path(), &name, &content)?;
         }
         if self.shown.is_json() {
-            return print_json(&as_json(&found));
+            return Report::json(&as_json(&found));
         }
         let trials = folder.experiment().trials;
         let margin = found.margin.map_or("0".to_owned(), short);
-        writeln!(out, "{}: {trials} pairs by seed, minus {}; margin {margin}", found.metric, found.draw)?;
-        print_borne(out, &found)?;
-        print_prices(out, &found)?;
-        print_judgements(out, &found)
+        let first =
+            format!("{}: {trials} pairs by seed, minus {}; margin {margin}", found.metric, found.draw);
+        let mut out = Report::from(first);
+        out.titled("\nMeans by number of liars, and how many liars a policy bears", borne(&found));
+        if !found.prices.is_empty() {
+            out.titled(
+                "\nThe price where nobody lies: a policy with its estimator minus the same without",
+                prices(&found),
+            );
+        }
+        if !found.judgements.is_empty() {
+            out.titled("\nHow well estimators judge the same evidence", judgements(&found));
+        }
+        Ok(out)
     }
-}
 
-impl Arguments {
-    fn replayed(&self, folder: &Path, experiment: &Experiment, out: &mut dyn Write) -> Result<(), Failure> {
+    fn replayed(&self, folder: &Path, experiment: &Experiment) -> Result<Report, Failure> {
         let study = StudyFolder::read(folder)?;
         let objective = Objective::parse("rescue_rate", &study.study.tasks).map_err(Failure::run)?;
-        let found = self.progress.work(study.trials.len() * experiment.cases.len(), "trials", |bar| {
-            Replay::of(experiment, &study, &objective, &STOP, || bar.inc(1))
-        })??;
+        let found =
+            self.progress.work(study.folder.entries.len() * experiment.cases.len(), "trials", |bar| {
+                Replay::of(experiment, &study, &objective, &STOP, || bar.inc(1))
+            })??;
         if self.shown.is_json() {
-            return print_json(&json!({"objective": found.objective, "liars": found.counts,
+            return Report::json(&json!({"objective": found.objective, "liars": found.counts,
                 "trials": found.trials, "policies": found.worths}));
         }
         let words = "minus the mean of all assignments, by number of liars";
-        writeln!(out, "{}: {} trials that DIS decided; {words}", objective.title(), found.trials)?;
-        let names = ["policy", "lie"].map(str::to_owned).into_iter();
-        let mut table = headed(names.chain(found.counts.iter().map(u32::to_string)));
-        for one in &found.worths {
-            let cells = one.differences.iter().map(|it| number(it.mean));
-            table.add_row([one.policy.as_str().into(), one.lie.as_str().into()].into_iter().chain(cells));
-        }
-        print_table(out, &table)
+        let first = format!("{}: {} trials that DIS decided; {words}", objective.title(), found.trials);
+        let rows = found
+            .worths
+            .iter()
+            .map(|one| of_lie(&one.policy, &one.lie, one.differences.iter().map(|it| number(it.mean))));
+        let header = of_lie("policy", "lie", &found.counts);
+        let mut out = Report::from(first);
+        out.show(Table::of(header, rows));
+        Ok(out)
     }
 }
 
-fn print_borne(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
-    writeln!(out, "\nMeans by number of liars, and how many liars a policy bears")?;
-    let counts = found.counts.iter().map(u32::to_string);
-    let names = ["policy", "lie"].map(str::to_owned).into_iter().chain(counts);
-    let mut table = headed(names.chain(["breaks down".to_owned()]));
-    for one in &found.borne {
+/// A row of a policy, or of an estimator, among robots that tell a lie.
+fn of_lie(who: &str, lie: &str, cells: impl IntoIterator<Item: Into<Entry>>) -> Vec<Entry> {
+    labelled(who, labelled(lie, cells))
+}
+
+fn borne(found: &Deceit) -> Table {
+    let header = of_lie("policy", "lie", found.counts.iter().map(Entry::from).chain(["breaks down".into()]));
+    let row = |one: &Borne| {
         let means = one.means.iter().map(|value| mean(*value));
-        let cells = [one.policy.as_str().into(), one.lie.as_str().into()];
-        table.add_row(cells.into_iter().chain(means).chain([in_words(one, &found.counts).into()]));
-    }
-    print_table(out, &table)
+        of_lie(&one.policy, &one.lie, means.chain([in_words(one, &found.counts).into()]))
+    };
+    Table::of(header, found.borne.iter().map(row))
 }
 
 /// The breakdown in words: "between 2 and 5 of 6".
@@ -149,34 +160,22 @@ fn in_words(one: &Borne, counts: &[u32]) -> String {
     }
 }
 
-fn print_prices(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
-    if found.prices.is_empty() {
-        return Ok(());
-    }
-    writeln!(out, "\nThe price where nobody lies: a policy with its estimator minus the same without")?;
-    let mut table = headed(["policy", "where", "difference", "95 % interval"]);
-    for price in &found.prices {
+fn prices(found: &Deceit) -> Table {
+    let rows = found.prices.iter().map(|price| {
         let has_one = found.prices.iter().filter(|other| other.policy == price.policy).count() == 1;
-        let place = if has_one { "everywhere" } else { &price.lie };
         let Difference { mean, interval } = price.difference;
-        let cells = [price.policy.as_str().into(), place.into(), number(mean), right(&between(interval))];
-        table.add_row(cells);
-    }
-    print_table(out, &table)
+        let place = if has_one { "everywhere" } else { &price.lie };
+        of_lie(&price.policy, place, [number(mean), right(between(interval))])
+    });
+    Table::of(["policy", "where", "difference", "95 % interval"], rows)
 }
 
-fn print_judgements(out: &mut dyn Write, found: &Deceit) -> Result<(), Failure> {
-    if found.judgements.is_empty() {
-        return Ok(());
-    }
-    writeln!(out, "\nHow well estimators judge the same evidence")?;
-    let mut table = headed(["estimator", "lie", "liars"].into_iter().chain(ACCURACY));
-    for one in &found.judgements {
-        let values = one.values.iter().map(|value| right(&or_dash(*value, |it| digits(it, 3))));
-        let cells = [one.guide.as_str().into(), one.lie.as_str().into(), right(&one.liars.to_string())];
-        table.add_row(cells.into_iter().chain(values));
-    }
-    print_table(out, &table)
+fn judgements(found: &Deceit) -> Table {
+    let rows = found.judgements.iter().map(|one| {
+        let values = one.values.iter().map(|value| right_or_dash(*value, |it| digits(it, 3)));
+        of_lie(&one.guide, &one.lie, [right(one.liars)].into_iter().chain(values))
+    });
+    Table::of(["estimator", "lie", "liars"].into_iter().chain(ACCURACY), rows)
 }
 
 fn as_json(found: &Deceit) -> serde_json::Value {

@@ -4,10 +4,9 @@ use experiments::experiment::{Experiment, Overrides};
 use experiments::files::NewFile;
 use experiments::oracle::{DEFAULT_LIMIT, Objective};
 use experiments::regret::{
-    Analysis, Choices, Criteria, Estimate, SUMMARY, Study, StudyFolder, TABLE, analyse,
+    Analysis, Choices, Criteria, DecisionRow, Estimate, SUMMARY, Study, StudyFolder, TABLE, analyse,
 };
 use reports::regret_figures;
-use reports::table::{headed, right};
 use serde_json::json;
 
 use crate::arguments::{
@@ -70,7 +69,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let registry = &self.measure.chosen_in(registry)?;
         let folder = if self.file.is_dir() { StudyFolder::read(&self.file)? } else { self.play(registry)? };
         let objectives = self.objectives(&folder.study.tasks)?;
@@ -80,16 +79,16 @@ impl Arguments {
             .iter()
             .map(|objective| analyse(&folder, &Criteria { objective, measure: &measure }, registry));
         let analyses = analyses.collect::<Result<Vec<_>, Failure>>()?;
-        write_tables(folder.path(), &analyses)?;
+        write_tables(&folder.folder.path, &analyses)?;
         for (name, content) in regret_figures(&analyses)? {
-            NewFile::write(folder.path(), &name, &content)?;
+            NewFile::write(&folder.folder.path, &name, &content)?;
         }
         if self.shown.is_json() {
             let name = &folder.study.name;
             let output = json!({"study": name, "analyses": analyses});
-            return print_json(&output);
+            return Report::json(&output);
         }
-        print(out, &folder, &analyses)
+        Ok(told(&folder, &analyses))
     }
 
     fn objectives(&self, tasks: &[String]) -> Result<Vec<Objective>, Failure> {
@@ -116,7 +115,7 @@ impl Arguments {
         if missing == 0 {
             return Ok(folder);
         }
-        self.progress.tell_resumed(folder.trials.len(), "trials");
+        self.progress.tell_resumed(folder.folder.entries.len(), "trials");
         self.progress.work(missing, "trials", |bar| {
             folder.play_missing(&experiment, &STOP, || bar.inc(1)).map(|()| folder)
         })?
@@ -129,28 +128,16 @@ fn write_tables(path: &Path, analyses: &[Analysis]) -> Result<(), Failure> {
         "metric", "trial", "seed", "driver", "round", "policy", "rank", "value", "regret", "best", "mean",
         "worst", "played", "is_exact",
     ];
-    let mut rows = vec![header.map(str::to_owned).to_vec()];
-    for analysis in analyses {
-        for row in &analysis.rows {
-            rows.push(vec![
-                analysis.metric.clone(),
-                row.trial.to_string(),
-                row.seed.to_string(),
-                row.driver.clone(),
-                row.round.to_string(),
-                row.policy.clone(),
-                row.rank.to_string(),
-                row.value.to_string(),
-                row.regret.to_string(),
-                row.best.to_string(),
-                row.mean.to_string(),
-                row.worst.to_string(),
-                row.played.to_string(),
-                row.is_exact.to_string(),
-            ]);
-        }
-    }
-    NewFile::write(path, TABLE, &csv_of(rows)?)?;
+    let row = |analysis: &Analysis, row: &DecisionRow| {
+        let before =
+            [analysis.metric.clone(), row.trial.to_string(), row.seed.to_string(), row.driver.clone()];
+        let policy = [row.round.to_string(), row.policy.clone(), row.rank.to_string()];
+        let values = [row.value, row.regret, row.best, row.mean, row.worst].map(|value| value.to_string());
+        let after = [row.played.to_string(), row.is_exact.to_string()];
+        before.into_iter().chain(policy).chain(values).chain(after).collect()
+    };
+    let rows = analyses.iter().flat_map(|analysis| analysis.rows.iter().map(move |one| row(analysis, one)));
+    NewFile::write(path, TABLE, tables::csv(header, rows)?.as_bytes())?;
     let summary = serde_json::to_vec_pretty(analyses).map_err(Failure::run)?;
     NewFile::write(path, SUMMARY, &summary).map(drop)
 }
@@ -165,7 +152,7 @@ fn with_interval(estimate: Option<&Estimate>, scale: f64, unit: &str) -> String 
     }
 }
 
-fn print(out: &mut dyn Write, folder: &StudyFolder, analyses: &[Analysis]) -> Result<(), Failure> {
+fn told(folder: &StudyFolder, analyses: &[Analysis]) -> Report {
     let study = &folder.study;
     let end = study
         .then
@@ -174,48 +161,35 @@ fn print(out: &mut dyn Write, folder: &StudyFolder, analyses: &[Analysis]) -> Re
     let rounds: Vec<String> = study.rounds.iter().map(u32::to_string).collect();
     let rounds =
         if rounds.is_empty() { "every round".to_owned() } else { format!("round {}", rounds.join(", ")) };
-    writeln!(
-        out,
+    let mut out = Report::from(format!(
         "{}: {} of {} trials, {rounds}; each decision played in all ways to the end {end}\n\
          Means over trials, in brackets 95 % intervals (bootstrap over trials)",
         study.name,
-        folder.trials.len(),
+        folder.folder.entries.len(),
         study.seeds.len()
-    )?;
-    analyses.iter().try_for_each(|analysis| print_analysis(out, analysis))
+    ));
+    analyses.iter().for_each(|analysis| tell_analysis(&mut out, analysis));
+    out
 }
 
-fn print_analysis(out: &mut dyn Write, analysis: &Analysis) -> Result<(), Failure> {
+fn tell_analysis(out: &mut Report, analysis: &Analysis) {
     let Analysis { metric, decisions, exact, .. } = analysis;
-    writeln!(out, "\n{metric}: {decisions} decisions, {exact} of them with all assignments")?;
-    writeln!(
-        out,
-        "  grouping matters (best and worst assignment differ) in {} of the decisions",
-        with_interval(analysis.matters.as_ref(), 100.0, " %")
-    )?;
-    for (name, estimate) in
-        [("best", &analysis.best), ("fair draw", &analysis.drawn), ("worst", &analysis.worst)]
-    {
-        writeln!(out, "  {name:<9} {}", with_interval(estimate.as_ref(), 1.0, ""))?;
-    }
-    let mut table = headed(["policy", "regret", "best choice", "better ones", "achieved"]);
-    for policy in &analysis.policies {
-        table.add_row([
-            right(&policy.policy),
-            right(&with_interval(policy.regret.as_ref(), 1.0, "")),
-            right(&with_interval(policy.best.as_ref(), 100.0, " %")),
-            right(&with_interval(policy.outranked.as_ref(), 100.0, " %")),
-            right(&with_interval(policy.achieved.as_ref(), 100.0, " %")),
-        ]);
-    }
-    print_table(out, &table)?;
-    let mut table = headed(["feature of an assignment", "rank correlation with the outcome", "decisions"]);
-    for row in &analysis.features {
-        table.add_row([
-            right(&row.feature),
-            right(&with_interval(row.correlation.as_ref(), 1.0, "")),
-            right(&row.decisions.to_string()),
-        ]);
-    }
-    print_table(out, &table)
+    let percent = |share: &Option<Estimate>| with_interval(share.as_ref(), 100.0, " %");
+    let plain = |value: &Option<Estimate>| with_interval(value.as_ref(), 1.0, "");
+    out.say(format!("\n{metric}: {decisions} decisions, {exact} of them with all assignments"));
+    let matters = percent(&analysis.matters);
+    out.say(format!("  grouping matters (best and worst assignment differ) in {matters} of the decisions"));
+    let choices = [("best", &analysis.best), ("fair draw", &analysis.drawn), ("worst", &analysis.worst)];
+    out.extend(choices.map(|(name, estimate)| format!("  {name:<9} {}", plain(estimate))));
+    let rows = analysis.policies.iter().map(|one| {
+        let shares = [&one.best, &one.outranked, &one.achieved].map(percent);
+        [one.policy.clone(), plain(&one.regret)].into_iter().chain(shares).map(right)
+    });
+    out.show(Table::of(["policy", "regret", "best choice", "better ones", "achieved"], rows));
+    let header = ["feature of an assignment", "rank correlation with the outcome", "decisions"];
+    let rows = analysis
+        .features
+        .iter()
+        .map(|row| [row.feature.clone(), plain(&row.correlation), row.decisions.to_string()].map(right));
+    out.show(Table::of(header, rows));
 }

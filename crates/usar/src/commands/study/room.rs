@@ -3,7 +3,7 @@
 use experiments::comparison::short;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::folder::Folder;
-use reports::table::{between, headed, mean, number, or_dash, right};
+use reports::table::{between, mean, number};
 use serde::Serialize;
 use serde_json::json;
 use statistics::{Moments, cautious};
@@ -16,8 +16,8 @@ use crate::prelude::*;
 /// The policy that the others are compared with.
 const DRAW: &str = "RANDOM";
 
-/// The oracles, and which assignment each picks. They look at this metric: the rate does not reward rounds that
-/// take long.
+/// The oracles, and which assignment each picks. They look at this metric: the rate does not reward rounds
+/// that take long.
 const ORACLES: [[&str; 2]; 2] = [["best", "Best"], ["worst", "Worst"]];
 const METRIC: &str = "rescue_rate";
 
@@ -84,30 +84,32 @@ struct Row {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         match self.files.as_slice() {
             [file] if !file.is_dir() => {
                 let experiment = self.experiment(file, registry)?;
                 let named = Path::new("results").join(format!("room-{}", experiment.name));
                 let place = self.out.clone().unwrap_or(named);
-                self.print(&[self.progress.finished(&place, experiment)?], out)
+                self.told(&[self.progress.finished(&place, experiment)?])
             }
             folders => {
                 let read = |folder: &PathBuf| read_sweep(folder, registry);
-                self.print(&folders.iter().map(read).collect::<Result<Vec<_>, _>>()?, out)
+                self.told(&folders.iter().map(read).collect::<Result<Vec<_>, _>>()?)
             }
         }
     }
 
-    fn print(&self, folders: &[Folder], out: &mut dyn Write) -> Result<(), Failure> {
+    fn told(&self, folders: &[Folder]) -> Result<Report, Failure> {
         let worlds = folders.iter().map(World::of).collect::<Result<Vec<_>, _>>()?;
         if self.shown.is_json() {
-            return print_json(&json!({ "worlds": worlds }));
+            return Report::json(&json!({ "worlds": worlds }));
         }
-        for World { world, trials, .. } in &worlds {
-            writeln!(out, "{world}: rescuees.total of {trials} trials, paired by seed; minus {DRAW}")?;
-        }
-        if let [world] = worlds.as_slice() { print_one(world, out) } else { print_all(&worlds, out) }
+        let of = |World { world, trials, .. }: &World| {
+            format!("{world}: rescuees.total of {trials} trials, paired by seed; minus {DRAW}")
+        };
+        let mut out = Report::of(worlds.iter().map(of));
+        out.show(if let [world] = worlds.as_slice() { of_one(world) } else { of_all(&worlds) });
+        Ok(out)
     }
 
     fn experiment(&self, file: &Path, registry: &Registry) -> Result<Experiment, Failure> {
@@ -132,42 +134,43 @@ impl World {
     }
 }
 
-fn print_one(world: &World, out: &mut dyn Write) -> Result<(), Failure> {
-    let mut table = headed(["policy", "mean", "minus a draw", "95 % interval", "in %"]);
-    for row in &world.policies {
-        table.add_row([
-            row.policy.as_str().into(),
+fn of_one(world: &World) -> Table {
+    let row = |row: &Row| {
+        [
+            Entry::from(&row.policy),
             mean(row.mean),
             number(row.difference),
-            right(&between(row.interval)),
-            right(&or_dash(row.percent, |percent| format!("{percent:+.1}"))),
-        ]);
-    }
-    print_table(out, &table)
+            right(between(row.interval)),
+            right_or_dash(row.percent, |percent| format!("{percent:+.1}")),
+        ]
+    };
+    let header = ["policy", "mean", "minus a draw", "95 % interval", "in %"];
+    Table::of(header, world.policies.iter().map(row))
 }
 
 /// A row for each world: what a draw rescues, and what each policy has above it.
-fn print_all(worlds: &[World], out: &mut dyn Write) -> Result<(), Failure> {
+fn of_all(worlds: &[World]) -> Table {
     let mut others: Vec<&str> = Vec::new();
     for row in worlds.iter().flat_map(|world| &world.policies) {
         if row.policy != DRAW && !others.contains(&&*row.policy) {
             others.push(&row.policy);
         }
     }
-    let mut table = headed(["world", DRAW].into_iter().chain(others.iter().copied()).collect::<Vec<_>>());
-    for world in worlds {
+    let row = |world: &World| {
         let of = |label: &str| world.policies.iter().find(|row| row.policy == label);
         let above = |label: &&str| {
-            let row = of(label).filter(|row| row.difference.is_some());
-            right(&row.map_or("-".to_owned(), |row| match row.interval {
-                Some(_) => format!("{} ({})", or_dash(row.difference, short), between(row.interval)),
-                None => or_dash(row.difference, short),
-            }))
+            let row = of(label);
+            right_or_dash(row.and_then(|row| Some((row.difference?, row.interval))), |(above, interval)| {
+                match interval {
+                    Some(_) => format!("{} ({})", short(above), between(interval)),
+                    None => short(above),
+                }
+            })
         };
         let draw = mean(of(DRAW).and_then(|row| row.mean));
-        table.add_row([world.world.as_str().into(), draw].into_iter().chain(others.iter().map(above)));
-    }
-    print_table(out, &table)
+        labelled(&world.world, std::iter::once(draw).chain(others.iter().map(above)))
+    };
+    Table::of(["world", DRAW].into_iter().chain(others.iter().copied()), worlds.iter().map(row))
 }
 
 fn rows(folder: &Folder) -> Result<Vec<Row>, Failure> {

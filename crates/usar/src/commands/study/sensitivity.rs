@@ -4,6 +4,7 @@ use clap::ValueEnum;
 use experiments::comparison::{Asked, Wishes};
 use experiments::explore::{Evaluations, FIGURE, INDICES, Method, Row, Sensitivity, Space};
 use experiments::files::NewFile;
+use experiments::job::interrupted;
 use reports::{ranking, sensitivity_figure, sensitivity_table};
 use serde_json::json;
 
@@ -64,15 +65,12 @@ enum MethodName {
 }
 
 impl Arguments {
-    pub(crate) fn execute(&self, registry: &Registry, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         let study = self.study(registry)?;
         let folder = self.parameters.folder(&study.space.experiment, "sensitivity");
         let mut evaluations = study.open(&folder, self.parameters.fresh)?;
         if !self.evaluate(&study, &mut evaluations)? {
-            return Err(Failure::Interrupted(format!(
-                "stopped; what is done is in {}, and the same command goes on",
-                folder.display()
-            )));
+            return Err(interrupted(&folder, "what is done is"));
         }
         let rows = study.indices(self.blocks(), &evaluations);
         let [svg, csv] = sensitivity_figure(&rows)?;
@@ -80,9 +78,9 @@ impl Arguments {
         if !svg.is_empty() {
             NewFile::write(&folder, FIGURE, &svg)?;
         }
-        self.print(out, &study, &evaluations, &rows)?;
+        self.told(&study, &evaluations, &rows)?.print()?;
         self.parameters.progress.tell(format_args!("results in {}", folder.display()));
-        Ok(())
+        Ok(Report::default())
     }
 
     fn blocks(&self) -> u32 {
@@ -114,7 +112,7 @@ impl Arguments {
     }
 
     fn evaluate(&self, study: &Sensitivity, evaluations: &mut Evaluations) -> Result<bool, Failure> {
-        let (points, there) = (study.count(self.blocks()), evaluations.count(self.blocks()));
+        let (points, there) = (study.count(self.blocks()), study.evaluated(self.blocks(), evaluations));
         let progress = &self.parameters.progress;
         progress.tell_resumed(there, &format!("of {points} points"));
         progress.work(points, "points", |bar| {
@@ -123,13 +121,7 @@ impl Arguments {
         })?
     }
 
-    fn print(
-        &self,
-        out: &mut dyn Write,
-        study: &Sensitivity,
-        evaluations: &Evaluations,
-        rows: &[Row],
-    ) -> Result<(), Failure> {
+    fn told(&self, study: &Sensitivity, evaluations: &Evaluations, rows: &[Row]) -> Result<Report, Failure> {
         let outcomes = || study.space.outcomes.iter();
         let of = |name: String| rows.iter().filter(|row| row.outcome.name() == name).collect::<Vec<&Row>>();
         let panels: Vec<Vec<&Row>> = outcomes().map(|outcome| of(outcome.name())).collect();
@@ -144,20 +136,18 @@ impl Arguments {
                 "in_words": in_words.collect::<Vec<String>>(),
                 "points_without_numbers": failures.map_or(0, |(count, _)| count),
             });
-            return print_json(&output);
+            return Report::json(&output);
         }
+        let mut out = Report::default();
         for (outcome, rows) in outcomes().zip(&panels) {
-            writeln!(out, "{}", outcome.name())?;
-            print_table(out, &sensitivity_table(rows))?;
+            out.titled(outcome.name(), sensitivity_table(rows));
         }
-        for (outcome, rows) in outcomes().zip(&panels) {
-            writeln!(out, "{}", ranking(outcome, rows))?;
-        }
-        if let Some((count, reason)) = failures {
-            writeln!(out, "\n{count} points have no number and leave out their blocks; the first: {reason}")?;
-        }
-        writeln!(out, "\n{}", self.footnote(study))?;
-        Ok(())
+        out.extend(outcomes().zip(&panels).map(|(outcome, rows)| ranking(outcome, rows)));
+        out.extend(failures.map(|(count, reason)| {
+            format!("\n{count} points have no number and leave out their blocks; the first: {reason}")
+        }));
+        out.say(format!("\n{}", self.footnote(study)));
+        Ok(out)
     }
 
     fn footnote(&self, study: &Sensitivity) -> String {

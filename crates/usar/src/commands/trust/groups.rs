@@ -1,37 +1,33 @@
 //! The groups of a team by a policy.
 
 use experiments::experiment::PolicySpec;
-use reports::table::headed;
-use rne_core::{Account, Decision, LogBase, TaskId};
+use rne_core::LogBase;
 use serde_json::{Value, json};
+use teaming::{Account, Decision, TaskId};
 
 use super::team::Team;
-use crate::output::print_plain_json;
 use crate::prelude::*;
 
-/// Groups the team and prints the groups. A question in JSON is answered by the JSON of the decision.
-pub(super) fn show(
-    team: &Team,
-    spec: &PolicySpec,
-    is_json: bool,
-    out: &mut dyn Write,
-) -> Result<(), Failure> {
+/// Groups the team. A question in JSON is answered by the JSON of the decision.
+pub(super) fn told(team: &Team, spec: &PolicySpec, is_json: bool) -> Result<Report, Failure> {
     let decision = spec.made().decide(&team.question).map_err(|error| team.failure(&error))?;
     decision
         .assignment
         .check(&team.question)
         .map_err(|error| Failure::run(format!("{}: {error}", spec.label)))?;
     match (is_json, team.is_table()) {
-        (true, true) => print_json(&json!({
+        (true, true) => Report::json(&json!({
             "policy": spec.label,
             "groups": team.question.task_ids().map(|task| group(team, &decision, task)).collect::<Vec<_>>(),
             "decision": decision,
         })),
-        (true, false) => print_plain_json(&decision),
+        (true, false) => Report::plain_json(&decision),
         (false, _) => {
-            print_groups(out, team, &decision)?;
-            print_account(out, &decision, spec)?;
-            print_merges(out, team, &decision)
+            let mut out = Report::default();
+            out.show(groups(team, &decision));
+            tell_account(&mut out, &decision, spec);
+            out.extend(merges(team, &decision));
+            Ok(out)
         }
     }
 }
@@ -45,62 +41,45 @@ fn group(team: &Team, decision: &Decision, task: TaskId) -> Value {
 }
 
 /// A row for each task, a column for each role.
-fn print_groups(out: &mut dyn Write, team: &Team, decision: &Decision) -> Result<(), Failure> {
+fn groups(team: &Team, decision: &Decision) -> Table {
     let question = &team.question;
-    let mut table = headed(["task"].into_iter().chain(question.roles.iter().map(String::as_str)));
-    for task in question.task_ids() {
+    let row = |task| {
         let group = decision.assignment.of(task);
-        let of_role = |role| {
+        let of_role = move |role| {
             let members = question.of_role(role).filter(|member| group.contains(&member.id));
             members.map(|member| team.name(member.id)).collect::<Vec<String>>().join(" ")
         };
-        let name = question.tasks[task.index()].name.clone();
-        table.add_row([name].into_iter().chain(question.role_ids().map(of_role)));
-    }
-    print_table(out, &table)
+        labelled(&question.tasks[task.index()].name, question.role_ids().map(of_role))
+    };
+    Table::of(labelled("task", &question.roles), question.task_ids().map(row))
 }
 
 /// What the policy says of its decision.
-fn print_account(out: &mut dyn Write, decision: &Decision, spec: &PolicySpec) -> Result<(), Failure> {
+fn tell_account(out: &mut Report, decision: &Decision, spec: &PolicySpec) {
     if let Some(score) = decision.score {
         let written = spec.options().iter().find(|(name, _)| name == "log_base");
         let base = written.and_then(|(_, base)| serde_json::from_value(base.as_str().into()).ok());
         let base: LogBase = base.unwrap_or_default();
         let value = score.in_base(base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));
-        writeln!(out, "score   {value} (log base {base:?})")?;
-        print_bound(out, decision, base)?;
+        out.say(format!("score   {value} (log base {base:?})"));
     }
     let options = &spec.made().options;
     if !options.is_empty() {
-        writeln!(out, "options {options}")?;
+        out.say(format!("options {options}"));
     }
     if !decision.proven_optimal {
-        writeln!(
-            out,
+        out.say(
             "note: the team is too large to look at every grouping; this one was found by local search and \
-             is not proven optimal"
-        )?;
+             is not proven optimal",
+        );
     }
-    Ok(())
 }
 
 /// In which order roles were merged, where that decides something.
-fn print_merges(out: &mut dyn Write, team: &Team, decision: &Decision) -> Result<(), Failure> {
-    let Account::Rne(account) = &decision.account else { return Ok(()) };
-    if account.merges.len() < 2 {
-        return Ok(());
-    }
+fn merges(team: &Team, decision: &Decision) -> Option<String> {
+    let Account::Rne(account) = &decision.account else { return None };
     let roles = team.question.roles.join(", ");
-    Ok(writeln!(
-        out,
-        "merged  {roles}: the order in which the roles are first mentioned, which decides the merges"
-    )?)
-}
-
-/// How far the score can be from the best one.
-fn print_bound(out: &mut dyn Write, decision: &Decision, base: LogBase) -> Result<(), Failure> {
-    let (Some(bound), Some(gap)) = (decision.upper_bound, decision.gap_percent) else { return Ok(()) };
-    let bound = bound.in_base(base).map_or("infinite".to_owned(), |value| format!("{value:.9}"));
-    let optimal = if decision.proven_optimal { ", optimal" } else { "" };
-    Ok(writeln!(out, "bound   {bound} (gap {gap:.1} %{optimal})")?)
+    (account.merges.len() > 1).then(|| {
+        format!("merged  {roles}: the order in which the roles are first mentioned, which decides the merges")
+    })
 }

@@ -2,9 +2,9 @@
 
 use pictures::Picture;
 use reports::distrust_map;
-use reports::table::{Format, Table, headed, right, shown_as};
-use rne_core::MadeMeasure;
 use serde_json::{Value, json};
+use tables::{Format, shown_as};
+use teaming::MadeMeasure;
 
 use super::team::Team;
 use crate::prelude::*;
@@ -59,13 +59,13 @@ impl<'t> Matrix<'t> {
         Picture::of_svg(distrust_map(&title, &names, &self.distrust), DPI)
     }
 
-    pub(super) fn print_json(&self) -> Result<(), Failure> {
+    pub(super) fn as_json(&self) -> Result<Report, Failure> {
         let measure = &self.measure;
         let all = |value: &dyn Fn(f64) -> Value| {
             let row = |row: &Vec<f64>| row.iter().map(|distrust| value(*distrust)).collect::<Vec<Value>>();
             self.distrust.iter().map(row).collect::<Vec<_>>()
         };
-        print_json(&json!({
+        Report::json(&json!({
             "measure": measure.label,
             "unit": measure.it.unit(),
             "needs": self.team.question.needs,
@@ -77,40 +77,36 @@ impl<'t> Matrix<'t> {
         }))
     }
 
-    pub(super) fn print(&self, out: &mut dyn Write) -> Result<(), Failure> {
+    pub(super) fn told(&self) -> Report {
         let (label, unit) = (&self.measure.label, self.measure.it.unit());
-        writeln!(out, "{label} in {unit}: lower is more trust")?;
+        let mut out = Report::from(format!("{label} in {unit}: lower is more trust"));
         if shown_as() == Format::Table && self.names.len() > MOST_SHOWN {
-            print_table(out, &self.extremes())?;
-            writeln!(out, "all pairs: --format csv, --json, or --out matrix.svg")?;
+            out.show(self.extremes());
+            out.say("all pairs: --format csv, --json, or --out matrix.svg");
         } else {
-            print_table(out, &self.table())?;
+            out.show(self.table());
         }
-        Ok(writeln!(out, "needs: {}", self.team.needs())?)
+        out.say(format!("needs: {}", self.team.needs()));
+        out
     }
 
     /// All pairs, a row for each robot that trusts.
     fn table(&self) -> Table {
-        let names = self.names.iter().map(|name| right(name));
-        let mut table = headed(std::iter::once("from \\ to".into()).chain(names).collect::<Vec<_>>());
-        for (name, row) in self.names.iter().zip(&self.distrust) {
-            let cells = row.iter().map(|distrust| right(&shown(*distrust)));
-            table.add_row(std::iter::once(name.into()).chain(cells).collect::<Vec<_>>());
-        }
-        table
+        let rows = self.names.iter().zip(&self.distrust);
+        let row = |(name, row): (&String, &Vec<f64>)| labelled(name, row.iter().copied().map(shown));
+        Table::of(labelled("from \\ to", self.names.iter().map(right)), rows.map(row))
     }
 
     /// Of each robot, the other robots that it trusts most and least.
     fn extremes(&self) -> Table {
-        let mut table = headed(["robot", "trusts most", "", "trusts least", ""]);
-        for (i, row) in self.distrust.iter().enumerate() {
+        let row = |(i, row): (usize, &Vec<f64>)| {
             let others = || (0..row.len()).filter(|other| *other != i);
             let most = others().min_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap_or(i);
             let least = others().max_by(|a, b| row[*a].total_cmp(&row[*b])).unwrap_or(i);
-            let cells = [most, least].map(|other| [(&self.names[other]).into(), right(&shown(row[other]))]);
-            table.add_row(std::iter::once((&self.names[i]).into()).chain(cells.concat()).collect::<Vec<_>>());
-        }
-        table
+            let cells = [most, least].map(|other| [Entry::from(&self.names[other]), shown(row[other])]);
+            labelled(&self.names[i], cells.into_iter().flatten())
+        };
+        Table::of(["robot", "trusts most", "", "trusts least", ""], self.distrust.iter().enumerate().map(row))
     }
 }
 
@@ -124,13 +120,13 @@ fn drawn_name(name: &str) -> String {
     name.chars().take(MOST - 1).chain(['\u{2026}']).collect()
 }
 
-/// A value as a cell: in full for programs.
-fn shown(distrust: f64) -> String {
-    if distrust.is_infinite() {
+/// A value as an entry: in full for programs.
+fn shown(distrust: f64) -> Entry {
+    right(if distrust.is_infinite() {
         "infinite".to_owned()
     } else if shown_as().is_for_programs() {
         distrust.to_string()
     } else {
         format!("{distrust:.6}")
-    }
+    })
 }

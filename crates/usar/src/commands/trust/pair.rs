@@ -31,13 +31,8 @@ enum Base {
 }
 
 impl PairArguments {
-    /// Prints the RNE of the first side towards the second.
-    pub(super) fn execute(
-        &self,
-        weights: Option<&str>,
-        is_json: bool,
-        out: &mut dyn Write,
-    ) -> Result<(), Failure> {
+    /// The RNE of the first side towards the second.
+    pub(super) fn told(&self, weights: Option<&str>, is_json: bool) -> Result<Report, Failure> {
         let weights = self.weights(weights)?;
         let from = distribution("--trustor", &self.trustor, &weights)?;
         let to = distribution("--trustee", &self.trustee, &weights)?;
@@ -49,7 +44,7 @@ impl PairArguments {
         };
         let in_base = rne.in_base(base);
         if is_json {
-            return print_json(&json!({
+            return Report::json(&json!({
                 "rne": rne.nats(),
                 "infinite": rne.is_infinite(),
                 "trust": rne.trust(),
@@ -60,12 +55,13 @@ impl PairArguments {
             }));
         }
         let value = in_base.map_or("infinite".to_owned(), |value| format!("{value:.6} {unit}"));
-        writeln!(out, "RNE    {value}")?;
         let trust = rne.trust();
-        writeln!(out, "trust  {trust:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)")?;
-        writeln!(out, "from   {}", shares(&from))?;
-        writeln!(out, "to     {}", shares(&to))?;
-        Ok(())
+        Ok(Report::of([
+            format!("RNE    {value}"),
+            format!("trust  {trust:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)"),
+            format!("from   {}", shares(&from)),
+            format!("to     {}", shares(&to)),
+        ]))
     }
 
     fn weights(&self, weights: Option<&str>) -> Result<NeedWeights, Failure> {

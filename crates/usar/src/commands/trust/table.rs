@@ -6,7 +6,8 @@ use std::str::FromStr;
 
 use experiments::input_table::{CellProblem, InputRow, InputTable, Problem};
 use experiments::limits::TEAM_ROBOTS;
-use rne_core::{Member, NeedVector, RoleId};
+use rne_core::NeedVector;
+use teaming::{Member, RoleId};
 
 use crate::bad_value::BadValue;
 use crate::prelude::*;

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use experiments::input_table::InputRow;
-use rne_core::error::PolicyError;
-use rne_core::question::hardest_first;
-use rne_core::{Need, NeedWeights, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
+use rne_core::NeedWeights;
+use teaming::error::PolicyError;
+use teaming::question::hardest_first;
+use teaming::{Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
 
 use super::table::{LessIsBetter, NeedColumn, TeamTable};
 use crate::arguments::numbers;

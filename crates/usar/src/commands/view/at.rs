@@ -34,13 +34,13 @@ struct Robot<'a> {
 }
 
 /// Prints the state of each recording as a JSON object on its own line.
-pub(super) fn print(recordings: &[Recording], time_s: f64) -> Result<(), Failure> {
+pub(super) fn print(recordings: &[Recording], time_s: f64) -> Result<Report, Failure> {
     for recording in recordings {
         let number = recording.frame_at(time_s);
         let frame = recording.frame(number).map_err(Failure::input)?;
-        print_json(&output(recording, number, frame))?;
+        Report::json(&output(recording, number, frame))?.print()?;
     }
-    Ok(())
+    Ok(Report::default())
 }
 
 fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {

@@ -1,8 +1,8 @@
 //! The history of a robot up to a moment.
 
 use experiments::why::Exchange;
-use rne_core::{Decision, Question, TaskId};
 use serde::Serialize;
+use teaming::{Decision, Question, TaskId};
 use usar_sim::conflict::{Delay, DelayCause};
 use usar_sim::event::{Event, TurnBackCause};
 use usar_sim::ids::{RescueeId, RobotId};

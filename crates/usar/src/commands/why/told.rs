@@ -2,9 +2,9 @@
 
 use experiments::comparison::digits;
 use experiments::why::{Directed, Exchange, OtherChoice};
-use reports::table::{headed, right};
-use rne_core::decision::{Ranking, RneAccount};
-use rne_core::{Account as PolicyAccount, Question, RelativeNeedsEntropy};
+use rne_core::RelativeNeedsEntropy;
+use teaming::decision::{Ranking, RneAccount};
+use teaming::{Account as PolicyAccount, Member, Question};
 
 use super::robot::{RobotStory, in_words};
 use super::{Account, OracleSays};
@@ -17,53 +17,58 @@ const CLOSE: f64 = 0.05;
 /// Scores whose ratio differs from 1 by less than this are equal: they were summed in another order.
 const ROUNDING: f64 = 1e-9;
 
-pub(super) fn text(out: &mut dyn Write, account: &Account, asked: &Trial) -> Result<(), Failure> {
+pub(super) fn text(account: &Account, asked: &Trial) -> Report {
     let Account { question, decision, .. } = account;
-    writeln!(
-        out,
+    let mut out = Report::from(format!(
         "{}, seed {}: round {} began at {:.1} s, and {} decided.",
         account.scenario, account.seed, account.round, account.time_s, account.policy
-    )?;
-    for task in question.task_ids() {
-        let name = &question.tasks[task.index()].name;
-        writeln!(out, "  {name}: robots {}", ids(decision.assignment.of(task)))?;
+    ));
+    out.extend(question.task_ids().map(|task| {
+        format!("  {}: robots {}", question.tasks[task.index()].name, ids(decision.assignment.of(task)))
+    }));
+    out.say("");
+    if let Some(table) = said_and_true(account) {
+        out.show(table);
+        out.say("");
     }
-    writeln!(out)?;
-    said_and_true(out, account)?;
     match &decision.account {
-        PolicyAccount::Rne(of_rne) => rne(out, question, of_rne)?,
-        PolicyAccount::Ranking(ranking) => ranked(out, question, ranking)?,
-        PolicyAccount::Protocol(sent) => writeln!(
-            out,
+        PolicyAccount::Rne(of_rne) => rne(&mut out, question, of_rne),
+        PolicyAccount::Ranking(ranking) => ranked(&mut out, question, ranking),
+        PolicyAccount::Protocol(sent) => out.say(format!(
             "The robots would have agreed after {} exchanges, with {} messages of {} bytes in all.",
             sent.rounds, sent.messages, sent.bytes
-        )?,
-        PolicyAccount::Text(text) => writeln!(out, "{} says: {text}", account.policy)?,
-        _ => writeln!(out, "{} gives no account of its decision.", account.policy)?,
+        )),
+        PolicyAccount::Text(text) => out.say(format!("{} says: {text}", account.policy)),
+        _ => out.say(format!("{} gives no account of its decision.", account.policy)),
     }
     if let Some(pair) = account.directed.first() {
-        let [measure, unit] =
-            [&account.measure, &account.unit].map(|text| text.as_deref().unwrap_or_default());
-        needs(out, question, pair, &Printed { measure, unit })?;
+        needs(&mut out, account, pair);
     }
-    others(out, question, &account.others)?;
-    oracle(out, account, asked)?;
+    others(&mut out, question, &account.others);
+    oracle(&mut out, account, asked);
     if let Some(story) = &account.robot {
-        robot(out, story, account, asked)?;
+        robot(&mut out, story, account, asked);
     }
-    Ok(())
+    out
 }
 
-/// What each robot had said of itself, what the estimator believed, and what was true, where the base had to go by reports.
-fn said_and_true(out: &mut dyn Write, account: &Account) -> Result<(), Failure> {
-    let Some(evidence) = &account.question.evidence else { return Ok(()) };
+impl Account<'_> {
+    /// The name of the trust measure, and its unit.
+    fn measured(&self) -> [&str; 2] {
+        [&self.measure, &self.unit].map(|text| text.as_deref().unwrap_or_default())
+    }
+}
+
+/// What each robot had said of itself, what the estimator believed, and what was true, where the base had to
+/// go by reports.
+fn said_and_true(account: &Account) -> Option<Table> {
+    let evidence = account.question.evidence.as_ref()?;
     let believed = account.decision.believed.as_deref();
     let mut names = vec!["robot", "role", "energy said", "believed", "true"];
     names.extend(["HP said", "believed", "true", "trust", "heard, s ago"]);
     names.retain(|name| believed.is_some() || !["believed", "trust"].contains(name));
-    let mut table = headed(names);
-    let level = |level: Option<f64>| level.map_or("-".to_owned(), |level| format!("{level:.1}"));
-    for (place, (said, is)) in account.question.members.iter().zip(account.team).enumerate() {
+    let level = |level: Option<f64>| or_dash(level, |level| format!("{level:.1}"));
+    let row = |(place, (said, is)): (usize, (&Member, &Member))| {
         let thought = believed.and_then(|all| all.get(place));
         let think = |at: usize| thought.map(|it| level(Some(it.levels[at])));
         let trust = thought.map(|it| format!("{:.2}", it.trust));
@@ -72,11 +77,9 @@ fn said_and_true(out: &mut dyn Write, account: &Account) -> Result<(), Failure> 
         let robot = [said.id.to_string(), account.question.roles[said.role.index()].clone()].map(Some);
         let energy = [Some(level(said.energy_level)), think(0), Some(level(is.energy_level))];
         let hp = [Some(level(said.hp_level)), think(1), Some(level(is.hp_level))];
-        let cells = robot.into_iter().chain(energy).chain(hp).chain([trust, Some(age)]).flatten();
-        table.add_row(cells.map(|cell| right(&cell)));
-    }
-    print_table(out, &table)?;
-    Ok(writeln!(out)?)
+        robot.into_iter().chain(energy).chain(hp).chain([trust, Some(age)]).flatten().map(right)
+    };
+    Some(Table::of(names, account.question.members.iter().zip(account.team).enumerate().map(row)))
 }
 
 fn nats(score: Option<RelativeNeedsEntropy>) -> String {
@@ -104,11 +107,10 @@ fn parts(parts: &[Vec<u32>]) -> String {
     parts.join(" ")
 }
 
-fn rne(out: &mut dyn Write, question: &Question, account: &RneAccount) -> Result<(), Failure> {
-    writeln!(
-        out,
-        "How RNE came to it: the parts of each role that differ most, merged so that the groups differ most"
-    )?;
+fn rne(out: &mut Report, question: &Question, account: &RneAccount) {
+    out.say(
+        "How RNE came to it: the parts of each role that differ most, merged so that the groups differ most",
+    );
     for split in &account.splits {
         let role = &question.roles[split.role.index()];
         let next = split.runner_up.as_ref().map_or("; there is no other split".to_owned(), |next| {
@@ -119,68 +121,52 @@ fn rne(out: &mut dyn Write, question: &Question, account: &RneAccount) -> Result
                 margin(split.score, next.score)
             )
         });
-        writeln!(
-            out,
+        out.say(format!(
             "  {role}: {} of {} splits: {}{next}",
             parts(&split.parts),
             split.searched,
             nats(split.score)
-        )?;
+        ));
     }
     for merge in &account.merges {
         let role = &question.roles[merge.role.index()];
         let next = merge.runner_up.as_ref().map_or(String::new(), |next| {
             format!("; the next best way: {}{}", nats(next.score), margin(merge.score, next.score))
         });
-        writeln!(out, "  {role} joins the groups so far: {}{next}", nats(merge.score))?;
+        out.say(format!("  {role} joins the groups so far: {}{next}", nats(merge.score)));
     }
     if account.suitability.iter().any(|suited| suited.value.is_some()) {
-        writeln!(
-            out,
-            "  then the hardest task takes the best-suited group (option hard_rule), the next the next"
-        )?;
+        out.say("  then the hardest task takes the best-suited group (option hard_rule), the next the next");
     }
     for suited in &account.suitability {
         let name = &question.tasks[suited.task.index()].name;
         let value = suited.value.map_or("undefined".to_owned(), |value| format!("{value:.3e}"));
-        writeln!(out, "  {name} got the group whose suitability for a hard task is {value}")?;
+        out.say(format!("  {name} got the group whose suitability for a hard task is {value}"));
     }
-    Ok(())
 }
 
-fn ranked(out: &mut dyn Write, question: &Question, ranking: &Ranking) -> Result<(), Failure> {
-    writeln!(out, "It sorted the members of each role by {}; the first go to the hardest task", ranking.key)?;
+fn ranked(out: &mut Report, question: &Question, ranking: &Ranking) {
+    out.say(format!(
+        "It sorted the members of each role by {}; the first go to the hardest task",
+        ranking.key
+    ));
     for (role, members) in question.roles.iter().zip(&ranking.roles) {
         let members: Vec<String> =
             members.iter().map(|member| format!("{} ({:.1})", member.id, member.value)).collect();
-        writeln!(out, "  {role}: {}", members.join(", "))?;
+        out.say(format!("  {role}: {}", members.join(", ")));
     }
-    Ok(())
 }
 
-/// A trust measure, for people.
-struct Printed<'a> {
-    measure: &'a str,
-    unit: &'a str,
-}
-
-/// Prints what the best exchange of places would have changed.
-fn exchange(
-    out: &mut dyn Write,
-    best: &Exchange,
-    score: f64,
-    account: &Account,
-    asked: &Trial,
-) -> Result<(), Failure> {
-    let [measure, unit] = [&account.measure, &account.unit].map(|text| text.as_deref().unwrap_or_default());
+/// What the best exchange of places would have changed.
+fn exchange(best: &Exchange, score: f64, account: &Account, asked: &Trial) -> String {
+    let [measure, unit] = account.measured();
     let then = best.score.map_or("infinite".to_owned(), |value| format!("{value:.3e}"));
     let with = best.with;
     if asked.registry.chosen_measure().is_some() {
-        return Ok(writeln!(
-            out,
+        return format!(
             "  In the place of robot {with}, {measure} between the groups would be {then} instead of {score:.3e} \
              {unit}"
-        )?);
+        );
     }
     let verdict = match best.score {
         Some(value) if value <= score * (1.0 + ROUNDING) => {
@@ -188,49 +174,37 @@ fn exchange(
         }
         _ => "an exchange would have raised the score: the roles are split one by one, and not all together",
     };
-    Ok(writeln!(
-        out,
+    format!(
         "  In its group because {verdict}:\n  in the place of robot {with} the score is {then} instead of \
          {score:.3e} {unit}"
-    )?)
+    )
 }
 
-/// Prints the contribution of each need to the distrust between two groups, the largest first.
-fn needs(
-    out: &mut dyn Write,
-    question: &Question,
-    pair: &Directed,
-    printed: &Printed,
-) -> Result<(), Failure> {
-    let Printed { measure, unit } = printed;
+/// The contribution of each need to the distrust between two groups, the largest first.
+fn needs(out: &mut Report, account: &Account, pair: &Directed) {
+    let ([measure, unit], question) = (account.measured(), &account.question);
     let [from, to] = [pair.from, pair.to].map(|task| &question.tasks[task.index()].name);
-    writeln!(
-        out,
+    out.say(format!(
         "\nWhat drove it: {measure} from the {from} group to the {to} group, {}, need by need",
         pair.distrust.map_or("infinite".to_owned(), |value| format!("{value:.3e} {unit}"))
-    )?;
-    let mut rows: Vec<usize> = (0..pair.by_need.len()).collect();
+    ));
+    let mut needs: Vec<usize> = (0..pair.by_need.len()).collect();
     let size = |k: usize| pair.by_need[k].map_or(f64::INFINITY, f64::abs);
-    rows.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
-    let mut table = headed([
-        "need".to_owned(),
-        format!("share in {from}"),
-        format!("share in {to}"),
-        format!("adds ({unit})"),
-    ]);
-    for k in rows {
+    needs.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
+    let row = |k: usize| {
         let [p, q] = pair.shares[k].map(|share| format!("{:.3} %", 100.0 * share));
         let adds = pair.by_need[k].map_or("infinite".to_owned(), |nats| format!("{nats:+.3e}"));
-        table.add_row([right(&question.needs[k].name), right(&p), right(&q), right(&adds)]);
-    }
-    print_table(out, &table)
+        [question.needs[k].name.clone(), p, q, adds].map(right)
+    };
+    let header = ["need".to_owned(), format!("share in {from}"), format!("share in {to}")];
+    out.show(Table::of(header.into_iter().chain([format!("adds ({unit})")]), needs.into_iter().map(row)));
 }
 
-fn others(out: &mut dyn Write, question: &Question, others: &[OtherChoice]) -> Result<(), Failure> {
+fn others(out: &mut Report, question: &Question, others: &[OtherChoice]) {
     if others.is_empty() {
-        return Ok(());
+        return;
     }
-    writeln!(out, "\nWhat others would have decided")?;
+    out.say("\nWhat others would have decided");
     for other in others {
         let groups = question
             .task_ids()
@@ -241,25 +215,23 @@ fn others(out: &mut dyn Write, question: &Question, others: &[OtherChoice]) -> R
             (None, 0) => "the same".to_owned(),
             (None, count) => format!("{count} robots elsewhere: {groups}"),
         };
-        writeln!(out, "  {}: {moved}", other.policy)?;
+        out.say(format!("  {}: {moved}", other.policy));
     }
-    Ok(())
 }
 
-fn oracle(out: &mut dyn Write, account: &Account, asked: &Trial) -> Result<(), Failure> {
+fn oracle(out: &mut Report, account: &Account, asked: &Trial) {
     if account.oracle.is_empty() {
-        return Ok(writeln!(
-            out,
+        return out.say(format!(
             "\nHow good it was: not known; `usar oracle {} --seed {} --round {} --policy '{}'` plays all \
              assignments",
             asked.file.display(),
             asked.seed,
             account.round,
             asked.spec.plain()
-        )?);
+        ));
     }
-    writeln!(out, "\nHow good it was, among all assignments that the quotas allow")?;
-    account.oracle.iter().try_for_each(|said| Ok(writeln!(out, "  {}", judged(said))?))
+    out.say("\nHow good it was, among all assignments that the quotas allow");
+    out.extend(account.oracle.iter().map(|said| format!("  {}", judged(said))));
 }
 
 /// A judgement of the oracle in words.
@@ -275,31 +247,28 @@ fn judged(said: &OracleSays) -> String {
     format!("{metric} {over}: rank {rank} of {played}, with {value}; the best has {best}, the worst {worst}")
 }
 
-fn robot(out: &mut dyn Write, story: &RobotStory, account: &Account, asked: &Trial) -> Result<(), Failure> {
+fn robot(out: &mut Report, story: &RobotStory, account: &Account, asked: &Trial) {
     let RobotStory { robot, role, task, at_s, energy, hp, .. } = story;
     let task = task.as_deref().unwrap_or("no");
-    writeln!(
-        out,
+    out.say(format!(
         "\nRobot {robot}, {role}, in the {task} group; at {at_s:.1} s it has energy {energy:.1} % and HP \
          {hp:.1} %"
-    )?;
+    ));
     if let (Some(best), Some(score)) = (story.exchanges.first(), account.between) {
-        exchange(out, best, score, account, asked)?;
+        out.say(exchange(best, score, account, asked));
     }
     let delay = in_words(story.delay, story.waits_for);
-    writeln!(
-        out,
+    out.say(format!(
         "  At {at_s:.1} s it {delay} (since {:.1} s; {}, {:.2} m/s)",
         story.since_s, story.activity, story.speed_mps
-    )?;
+    ));
     if story.given_up > 0 {
-        writeln!(
-            out,
+        out.say(format!(
             "  Its group gave up on {} that {} still: it knows no way there, or came no nearer. It tries \
              again in the next round, with the ways that it knows then",
             counted(story.given_up, "rescuee"),
             if story.given_up == 1 { "waits" } else { "wait" }
-        )?;
+        ));
     }
     if let Some(turned) = &story.turned_back {
         let (rules, level) =
@@ -313,7 +282,6 @@ fn robot(out: &mut dyn Write, story: &RobotStory, account: &Account, asked: &Tri
         } else {
             "too little for the way to rest with its reserve".to_owned()
         };
-        writeln!(out, "  It turned back at {:.1} s with {name} {level:.1} %, {why}", turned.at_s)?;
+        out.say(format!("  It turned back at {:.1} s with {name} {level:.1} %, {why}", turned.at_s));
     }
-    Ok(())
 }

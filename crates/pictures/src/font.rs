@@ -1,4 +1,0 @@
-//! The font of all pictures.
-
-/// A subset of `DejaVu Sans`. Its licence is in the file beside it.
-pub(crate) const FONT: &[u8] = include_bytes!("../fonts/DejaVuSans-subset.ttf");

@@ -1,0 +1,104 @@
+//! A policy that is asked what an estimator thinks of the team, and not what robots said.
+
+use std::sync::Arc;
+
+use crate::decision::Decision;
+use crate::error::PolicyError;
+use crate::estimate::Estimator;
+use crate::made::{MadeEstimator, MadePolicy};
+use crate::session::{Asked, Basis, Driver, Session, TrialStart};
+use crate::trust_use::TrustUse;
+
+/// A policy behind an estimator: `RULE <- ESTIMATOR | USE`.
+#[derive(Debug, Clone)]
+pub struct Guided {
+    /// Its label, for errors.
+    pub label: String,
+    /// The policy that is asked.
+    pub rule: MadePolicy,
+    /// What judges the evidence.
+    pub estimator: MadeEstimator,
+    /// What is done about trust.
+    pub trust_use: TrustUse,
+}
+
+impl Driver for Guided {
+    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        let (label, estimator) = (self.label.clone(), Arc::clone(&self.estimator.it));
+        let rule = self.rule.open()?;
+        Ok(Box::new(GuidedSession { label, rule, estimator, trust_use: self.trust_use }))
+    }
+
+    fn basis(&self) -> Basis {
+        self.rule.it.basis()
+    }
+
+    fn needs_trial(&self) -> bool {
+        self.rule.it.needs_trial()
+    }
+
+    fn leaves_idle(&self) -> bool {
+        self.trust_use.leaves_idle() || self.rule.it.leaves_idle()
+    }
+
+    fn least_raters(&self) -> Option<u32> {
+        self.estimator.it.least_raters().max(self.rule.it.least_raters())
+    }
+
+    fn labelled(&self, label: &str) -> Option<Arc<dyn Driver>> {
+        let (label, rule) = (label.to_owned(), self.rule.clone().labelled(label));
+        Some(Arc::new(Self { label, rule, ..self.clone() }))
+    }
+
+    fn program(&self) -> Option<String> {
+        self.rule.it.program()
+    }
+
+    fn permission(&self) -> Result<(), PolicyError> {
+        self.rule.it.permission()
+    }
+
+    fn gave_up(&self) -> Option<String> {
+        self.rule.it.gave_up()
+    }
+
+    /// It leans on its rule and on its estimator.
+    fn fingerprint(&self) -> Option<String> {
+        Some(format!("{} <- {}", self.rule.fingerprint()?, self.estimator.fingerprint()?))
+    }
+}
+
+/// A policy behind an estimator at work.
+struct GuidedSession {
+    label: String,
+    rule: Box<dyn Session>,
+    estimator: Arc<dyn Estimator>,
+    trust_use: TrustUse,
+}
+
+impl Session for GuidedSession {
+    fn reset(&mut self, trial: &TrialStart<'_>) -> Result<(), PolicyError> {
+        self.rule.reset(trial)
+    }
+
+    /// A question without evidence is asked as it is: there is nothing to judge.
+    fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        let question = asked.question;
+        if question.evidence.is_none() {
+            return self.rule.decide(asked);
+        }
+        if self.trust_use.leaves_idle() && !question.may_idle {
+            return Err(PolicyError::MayNotIdle { policy: self.label.clone() });
+        }
+        let estimates = self.estimator.estimate(question)?;
+        let believed = Some(estimates.clone());
+        let judged = self.trust_use.judged(question, estimates)?;
+        let mut decision = self.rule.decide(&Asked { question: &judged.question, ..*asked })?;
+        let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
+        for assignment in std::iter::once(&mut decision.assignment).chain(others) {
+            assignment.idle.extend(&judged.excluded);
+            assignment.idle.sort_unstable();
+        }
+        Ok(Decision { believed, ..decision })
+    }
+}

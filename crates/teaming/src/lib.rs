@@ -1,0 +1,46 @@
+//! The question how a mixed team is to be grouped over any number of tasks, its answer, and who may be asked.
+//!
+//! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies and [trust measures](TrustMeasure) have
+//! names in a [`Registry`]. Whoever asks opens a [`Session`] of a [`Driver`]; a policy is the simplest one.
+//! Where robots may be wrong or lie, an [`Estimator`] says what is true and whom to believe. This crate has no
+//! world, reads no files and no clock; the maths of trust is the crate `rne-core`.
+
+pub mod arrow;
+pub mod assignments;
+pub mod decision;
+pub mod error;
+pub mod estimate;
+pub mod evidence;
+pub mod guided;
+pub mod history;
+pub mod ids;
+pub mod made;
+pub mod measure;
+pub mod nested;
+mod options;
+pub mod policy;
+pub mod question;
+pub mod registry;
+pub mod registry_error;
+pub mod said;
+pub mod schema;
+pub mod session;
+pub mod trust_use;
+
+pub use decision::{Account, Alternative, Assignment, Decision};
+pub use error::{AssignmentError, PolicyError, QuestionError};
+pub use estimate::{Estimate, Estimator};
+pub use evidence::{
+    Body, Evidence, Expected, Extent, Level, LevelNeed, LevelReport, Rating, RobotRound, TrueLevels,
+};
+pub use history::{GroupOutcome, MemberOutcome, RoundOutcome};
+pub use ids::{NeedId, RoleId, TaskId};
+pub use made::{Made, MadeEstimator, MadeMeasure, MadePolicy};
+pub use measure::{NeedPart, TeamTrust, TrustMeasure};
+pub use policy::Policy;
+pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
+pub use registry::{EstimatorKind, Kind, Makes, MeasureKind, PolicyKind, Registry};
+pub use registry_error::RegistryError;
+pub use said::{EnergyOutcome, SaidRounds, Used};
+pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};
+pub use trust_use::TrustUse;

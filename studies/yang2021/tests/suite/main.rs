@@ -1,0 +1,14 @@
+//! The study as a user meets it, and its parts.
+
+#[path = "../../../../crates/usar/tests/suite/support.rs"]
+#[expect(dead_code, reason = "shared with the tests of the laboratory")]
+mod support;
+
+mod calibrated;
+mod calibration;
+mod claims;
+mod readings;
+
+/// The program of the study. That of the laboratory, which starts it, stands beside it: testing the workspace
+/// builds both.
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_usar-yang2021");
