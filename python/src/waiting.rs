@@ -1,11 +1,11 @@
 //! Work without the lock of the interpreter, which Ctrl-C ends. Meanwhile the thread that called answers for
 //! policies in Python.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::thread::available_parallelism;
+use std::thread::{Builder, available_parallelism};
 use std::time::{Duration, Instant};
 
 use experiments::panic_message;
@@ -20,9 +20,18 @@ const PERIOD: Duration = Duration::from_millis(50);
 /// child of a process that forks has none of its threads.
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let cores = available_parallelism().map_or(1, usize::from);
-    let builder = ThreadPoolBuilder::new().num_threads(threads.clamp(1, cores));
-    let done = builder.build_scoped(rayon::ThreadBuilder::run, |pool| pool.install(work));
-    done.map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    let mut threads_at_work = Vec::new();
+    let builder = ThreadPoolBuilder::new().num_threads(threads.clamp(1, cores)).spawn_handler(|thread| {
+        threads_at_work.push(Builder::new().spawn(|| thread.run())?);
+        Ok(())
+    });
+    let pool = builder.build().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let done = catch_unwind(AssertUnwindSafe(|| pool.install(work)));
+    drop(pool);
+    for thread in threads_at_work {
+        let _ = thread.join(); // a panic of the work is in `done`
+    }
+    Ok(done.unwrap_or_else(|panic| resume_unwind(panic)))
 }
 
 /// Something that the thread that called does for a thread at work.

@@ -21,12 +21,10 @@ hello()
 
 /// The processes whose numbers were noted in a folder and that still live.
 fn living(folder: &Path) -> Vec<String> {
-    let pids = std::fs::read_to_string(folder.join("pids")).unwrap();
-    let lives = |pid: &&str| {
-        let state = Command::new("ps").args(["-o", "stat=", "-p", pid]).output().unwrap().stdout;
-        !state.is_empty() && !state.starts_with(b"Z")
-    };
-    pids.split(' ').filter(lives).map(str::to_owned).collect()
+    let pids = std::fs::read_to_string(folder.join("pids")).unwrap().replace(' ', ",");
+    let listed = Command::new("ps").args(["-o", "stat=,pid=", "-p", &pids]).output().unwrap().stdout;
+    let listed = String::from_utf8(listed).unwrap();
+    listed.lines().filter(|line| !line.starts_with('Z')).map(str::to_owned).collect()
 }
 
 #[track_caller]
