@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use experiments::experiment::{Experiment, Overrides, with_oracle};
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 
 use crate::support::{paper_text, root};
 

@@ -1,8 +1,8 @@
 //! Nothing appears or vanishes: rescuees, capacity, resources, energy and HP, with every invariant checked at
 //! every step.
 
+use scenario::Scenario;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::scenario::Scenario;
 
 use crate::support::{paper, paper_with, root, trial};
 

@@ -11,8 +11,8 @@ use experiments::input_table::InputTable;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::{RngSeed, TestRunner, contextualize_config};
+use scenario::Scenario;
 use teaming::Question;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::Identity;
 

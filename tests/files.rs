@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use scenario::{Scenario, scenario_schema};
 use usar_sim::record::Status;
-use usar_sim::scenario::{Scenario, scenario_schema};
 use usar_sim::simulation::Simulation;
 use xtask::{random, reference, reference_pages};
 

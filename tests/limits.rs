@@ -1,8 +1,8 @@
 //! Each limit of a scenario holds at the limit and not one above; the page of limits is made of the
 //! constants.
 
-use usar_sim::limits;
-use usar_sim::scenario::{Problem, Scenario, ScenarioFile};
+use scenario::limits;
+use scenario::{Problem, Scenario, ScenarioFile};
 
 use crate::support::{paper, paper_text};
 

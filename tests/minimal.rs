@@ -3,10 +3,10 @@
 use std::fmt::Write;
 
 use parry2d::math::Vector;
+use scenario::{PriorityRule, Scenario, ScenarioFile};
 use usar_sim::belief::Belief;
 use usar_sim::planning::Query;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::scenario::{PriorityRule, Scenario, ScenarioFile};
 use usar_sim::simulation::Simulation;
 
 use crate::support::{lies, policy, root};
@@ -53,7 +53,7 @@ fn free_path_s(scenario: &Scenario, trial: &Simulation) -> f64 {
     (0..world.debris.len()).filter(|i| world.debris[*i].is_fixed()).for_each(|i| {
         known.hear(&lies(i, &world.debris[i].outline(), 0));
     });
-    let time = |errand: &usar_sim::scenario::Errand| {
+    let time = |errand: &scenario::Errand| {
         let robot = &world.robots[errand.robot as usize];
         let mut from = robot.home;
         let mut length = 0.0;
@@ -151,7 +151,7 @@ fn rings_of_2_to_30_robots_swap_sides_in_time() {
             robot.center = [middle + x, middle + y];
             file.team.push(robot);
             let to = vec![[middle - x, middle - y]];
-            file.errands.push(usar_sim::scenario::Errand { robot: i, to });
+            file.errands.push(scenario::Errand { robot: i, to });
         }
         assert!(file.team.len() < all);
         let (record, free_path_s) = run(file);

@@ -1,12 +1,12 @@
 //! The readings of the paper's mission that are options: each does what studies/yang2021/docs/readings.md says, with every
 //! invariant checked.
 
+use scenario::Scenario;
 use teaming::{Asked, Decision, Policy, PolicyError, Question, TaskId};
 use usar_sim::event::{Event, Place};
 use usar_sim::ids::RobotId;
 use usar_sim::mission::Activity;
 use usar_sim::record::{DecisionRecord, Status};
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use crate::support::{paper_with, policy, trial};

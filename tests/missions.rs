@@ -3,10 +3,10 @@
 //! is a change of what people get: it must be meant, and told in the changelog.
 
 use rayon::prelude::*;
+use scenario::{RoleKind, Scenario};
 use teaming::{Account, Asked, RoleId, TaskId};
 use usar_sim::ids::RobotId;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::scenario::{RoleKind, Scenario};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use crate::support::{policy, root, trial};

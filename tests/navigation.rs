@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use xtask::navigation::problems::problems;
 use xtask::navigation::{FILE_SEED, folder, trial};
 

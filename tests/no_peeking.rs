@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
+use scenario::Scenario;
 use teaming::Asked;
 use usar_sim::event::Event;
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
 use usar_sim::navigation::Goal;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::world::RescueeState;
 

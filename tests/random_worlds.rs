@@ -1,7 +1,7 @@
 //! A sample of the random worlds; hundreds more are recipes.
 
 use rayon::prelude::*;
-use usar_sim::scenario::{Scenario, ScenarioFile};
+use scenario::{Scenario, ScenarioFile};
 use xtask::journeys::{Journeys, STANDSTILL_S};
 use xtask::quiet::both_ways;
 use xtask::worlds::world;

@@ -6,13 +6,13 @@
 use parry2d::math::Vector;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use scenario::shapes::{Outline, RadiationZone};
+use scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::belief::Belief;
-use usar_sim::geometry::{Outline, RadiationZone};
 use usar_sim::model::{Layout, Model};
 use usar_sim::navigation::{Goal, Navigator, Outlook};
 use usar_sim::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query};
 use usar_sim::robot::Robot;
-use usar_sim::scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::world::World;
 
 use crate::support::{lies, paper, paper_with, trial};

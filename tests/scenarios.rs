@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use experiments::experiment::{Experiment, Overrides};
-use usar_sim::model::Layout;
-use usar_sim::scenario::{
+use scenario::{
     Door, EmptyTasks, MissionRules, ResolverRule, RightOfWay, RoleFile, Scenario, ScenarioFile, WallFile,
 };
+use usar_sim::model::Layout;
 
 use crate::support::{SAMPLED, paper, paper_text, paper_with, root};
 

@@ -7,8 +7,8 @@ use jsonschema::Validator;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use ron_tree::{Node, Value as Ron};
+use scenario::{Scenario, ScenarioError, scenario_schema};
 use serde_json::{Map, Value, json};
-use usar_sim::scenario::{Scenario, ScenarioError, scenario_schema};
 
 use crate::support::root;
 

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use scenario::Scenario;
+use scenario::shapes::Outline;
 use teaming::Session;
-use usar_sim::geometry::Outline;
 use usar_sim::ids::RobotId;
 use usar_sim::record::TrialRecord;
 use usar_sim::report::{Report, Speaker, Statement};
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 /// The root of the workspace.

@@ -5,10 +5,10 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;
+use scenario::Scenario;
 use teaming::{Asked, Assignment, Question};
 use usar_sim::hash::PARTS;
 use usar_sim::record::TrialRecord;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Simulation};
 
 use crate::support::{paper_with, policy};

@@ -8,8 +8,17 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The crates that decide the numbers of every trial. Studies hash their own sources.
-const DECIDING: [&str; 8] =
-    ["ron-tree", "rne-core", "teaming", "frozen-physics", "usar-sim", "statistics", "tables", "experiments"];
+const DECIDING: [&str; 9] = [
+    "ron-tree",
+    "rne-core",
+    "teaming",
+    "scenario",
+    "frozen-physics",
+    "usar-sim",
+    "statistics",
+    "tables",
+    "experiments",
+];
 
 fn main() {
     let root = Path::new("../..");

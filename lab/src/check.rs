@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use scenario::{Problem, Problems, Scenario, ScenarioError};
 use serde::Serialize;
-use usar_sim::scenario::{Problem, Problems, Scenario, ScenarioError};
 
 use crate::texts::{Texts, plain};
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
+use scenario::{Scenario, ScenarioError, parse_tree};
 use serde::Deserialize;
-use usar_sim::scenario::{Scenario, ScenarioError, parse_tree};
 
 /// A scenario as the page has it.
 #[derive(Deserialize)]

@@ -5,7 +5,7 @@ use experiments::experiment::SweepFileError;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pythonize::PythonizeError;
-use usar_sim::scenario::{Location, ScenarioError as Unusable};
+use scenario::{Location, ScenarioError as Unusable};
 
 pyo3::create_exception!(usar, ScenarioError, PyValueError, "A scenario or a sweep file that cannot be used.");
 pyo3::create_exception!(usar, PolicyError, PyRuntimeError, "A policy that did not answer a question.");

@@ -6,7 +6,7 @@ use pyo3::exceptions::{PyRecursionError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use ron_tree::limits::{NESTING, TEXT_BYTES};
-use usar_sim::scenario::{Problems, Scenario as Checked, ScenarioError, ScenarioFile};
+use scenario::{Problems, Scenario as Checked, ScenarioError, ScenarioFile};
 
 use crate::errors::unusable;
 

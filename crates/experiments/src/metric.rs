@@ -7,11 +7,11 @@ mod values;
 
 use std::ops::Deref;
 
+use scenario::{Scenario, Words};
 use statistics::comparison::Direction;
 use store::Failure;
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::TrialRecord;
-use usar_sim::scenario::{Scenario, Words};
 
 pub use values::Values;
 

@@ -6,8 +6,8 @@ use experiments::experiment::with_settings;
 use experiments::oracle::{Branch, advance_to};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use scenario::Scenario;
 use teaming::{Asked, Deadline};
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 const SCENARIOS: [&str; 6] =

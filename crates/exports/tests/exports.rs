@@ -12,9 +12,9 @@ use parquet::file::metadata::RowGroupMetaData;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use recording::{Options, Recording, Table, record};
+use scenario::Scenario;
 use serde_json::Value;
 use tables::{About, Kind};
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 fn recorded(file: &str, duration_s: f64) -> Recording {

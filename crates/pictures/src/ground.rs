@@ -1,7 +1,7 @@
 //! The surroundings of robots: the floor, the places of the tasks, radiation, debris and rescuees.
 
 use recording::World;
-use usar_sim::scenario::{DebrisFile, DebrisShape, Point, ZoneFile};
+use scenario::{DebrisFile, DebrisShape, Point, ZoneFile};
 
 use crate::legend::{Entry, Sign};
 use crate::picture::{Look, Picture};

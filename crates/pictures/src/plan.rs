@@ -1,7 +1,7 @@
 //! The world before the trial.
 
 use recording::World;
-use usar_sim::scenario::Errand;
+use scenario::Errand;
 
 use crate::ground;
 use crate::legend::{Entry, Sign};

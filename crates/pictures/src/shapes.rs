@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use usar_sim::scenario::{DebrisShape, Point, RoleFile, RoleKind};
+use scenario::{DebrisShape, Point, RoleFile, RoleKind};
 
 use crate::svg::{At, Path};
 

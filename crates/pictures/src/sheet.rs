@@ -1,6 +1,6 @@
 //! A sheet with the map of an arena, a title above it, and a scale and a legend below it.
 
-use usar_sim::scenario::Point;
+use scenario::Point;
 
 use crate::legend::{Entry, Legend};
 use crate::picture::{FONTS, Look, Picture};

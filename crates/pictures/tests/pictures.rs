@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pictures::{Animation, Look, Picture, PictureError, Pixels, Plan, Width, moment, plan, trails};
 use recording::{Options, Recording, World, record};
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 fn scenario(file: &str, duration_s: f64) -> Scenario {

@@ -56,7 +56,7 @@ impl TimedDecision {
 
 #[cfg(test)]
 mod tests {
-    use usar_sim::scenario::Scenario;
+    use scenario::Scenario;
     use usar_sim::simulation::Simulation;
 
     use super::*;

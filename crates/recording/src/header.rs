@@ -1,8 +1,8 @@
 //! The header: what is recorded, and everything that stays the same.
 
+use scenario::{DebrisFile, NeedFile, Point, RoleFile, Words, ZoneFile};
 use serde::{Deserialize, Serialize};
 use usar_sim::conflict::DelayCause;
-use usar_sim::scenario::{DebrisFile, NeedFile, Point, RoleFile, Words, ZoneFile};
 use usar_sim::simulation::Simulation;
 use xxhash_rust::xxh3::xxh3_128;
 
@@ -242,7 +242,7 @@ impl World {
     /// The world of a trial.
     pub fn of(simulation: &Simulation) -> Self {
         let (model, scenario, layout) = (simulation.model(), simulation.scenario(), simulation.layout());
-        let task = |(task, model): (&usar_sim::scenario::TaskFile, &usar_sim::model::TaskModel)| TaskPlace {
+        let task = |(task, model): (&scenario::TaskFile, &usar_sim::model::TaskModel)| TaskPlace {
             name: task.name.clone(),
             difficulty: task.difficulty,
             center: task.center,

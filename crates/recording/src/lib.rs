@@ -13,7 +13,7 @@
 //!
 //! ```no_run
 //! use recording::{Options, Recording, record};
-//! use usar_sim::{scenario::Scenario, simulation::Simulation};
+//! use usar_sim::simulation::Simulation;
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
 //! let registry = policies::standard();

@@ -1,6 +1,6 @@
 //! The needs of a robot at a frame.
 
-use usar_sim::scenario::Measure;
+use scenario::Measure;
 use usar_sim::vitals::health_factor;
 
 use crate::frame::RobotFrame;
@@ -15,7 +15,7 @@ impl World {
         let (energy, hp) = (level(frame.motion.energy_millipercent), level(frame.motion.hp_millipercent));
         let factor = health_factor(hp, self.health_floor);
         let room = role.capacity - frame.state.load.min(role.capacity);
-        let value = |need: &usar_sim::scenario::NeedFile| match need.measures {
+        let value = |need: &scenario::NeedFile| match need.measures {
             Measure::Health => role.hp * hp / 100.0,
             Measure::Speed => role.speed_mps * factor,
             Measure::Sensing => role.sensing_m * factor,

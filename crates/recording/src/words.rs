@@ -1,10 +1,10 @@
 //! Events in words, and as lines of JSON.
 
+use scenario::{DebrisFile, ZoneFile};
 use serde::Serialize;
 use serde_json::{Map, Value};
 use usar_sim::event::{CutOffCause, Event, Place, ReturnCause, TurnBackCause};
 use usar_sim::ids::RobotId;
-use usar_sim::scenario::{DebrisFile, ZoneFile};
 use usar_sim::simulation::Simulation;
 
 /// An event with its time, its name and a sentence.
@@ -203,8 +203,8 @@ pub fn told(simulation: &Simulation) -> impl Iterator<Item = ToldEvent> + '_ {
 
 #[cfg(test)]
 mod tests {
+    use scenario::DebrisShape;
     use teaming::TaskId;
-    use usar_sim::scenario::DebrisShape;
 
     use super::*;
 

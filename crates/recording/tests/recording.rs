@@ -5,9 +5,9 @@ use std::path::Path;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use recording::{Options, ReadError, Recorder, Recording, record};
+use scenario::{Measure, Scenario};
 use teaming::{Session, TaskId};
 use usar_sim::mission::Activity;
-use usar_sim::scenario::{Measure, Scenario};
 use usar_sim::simulation::Simulation;
 use usar_sim::world::RescueeState;
 

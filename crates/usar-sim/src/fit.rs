@@ -2,12 +2,12 @@
 //! fits names only tasks, roles and robots that exist, and its counts and sums can be computed.
 
 use ron_tree::Problem;
+use scenario::Scenario;
 use serde_json::Value;
 use teaming::{Decision, Member, MemberOutcome, Question, RoundOutcome, TaskId};
 
 use crate::event::Event;
 use crate::record::{TaskRecord, TrialRecord};
-use crate::scenario::Scenario;
 
 /// No result of a trial is as large as this: neither a time, nor a cost, nor a distance.
 const MOST: f64 = 1e15;

@@ -5,7 +5,8 @@
 //! with a [`record::TrialRecord`]:
 //!
 //! ```no_run
-//! use usar_sim::{scenario::Scenario, simulation::Simulation};
+//! use scenario::Scenario;
+//! use usar_sim::simulation::Simulation;
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;
 //! let mut rne = policies::standard().open("RNE")?;
@@ -18,15 +19,14 @@
 //! transcendental functions come from `libm`; and nothing iterates over a hash map or reads a clock.
 
 pub mod belief;
+mod by_x;
 pub mod conflict;
 pub mod event;
 pub mod fit;
-pub mod geometry;
 pub mod hash;
 pub mod ids;
 pub mod intent;
 pub mod invariant;
-pub mod limits;
 pub mod metrics;
 pub mod mission;
 pub mod model;
@@ -37,8 +37,6 @@ mod quiet;
 pub mod record;
 pub mod report;
 pub mod robot;
-pub mod scenario;
-pub mod seed;
 pub mod sensors;
 pub mod simulation;
 pub mod snapshot;

@@ -19,9 +19,9 @@ use rapier2d::geometry::{ColliderBuilder, Group, InteractionGroups, InteractionT
 use rapier2d::pipeline::PhysicsWorld;
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::Outline;
 use crate::ids::RobotId;
 use crate::quiet::{Disc, Fixed, Quiet};
+use scenario::shapes::Outline;
 
 /// Features of the engine that change numerical results, for the manifests of results.
 pub const ENGINE_FEATURES: [&str; 1] = ["rapier2d/enhanced-determinism"];

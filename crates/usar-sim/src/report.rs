@@ -5,10 +5,10 @@
 
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
+use scenario::shapes::RadiationZone;
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
-use crate::geometry::RadiationZone;
 use crate::ids::{RescueeId, RobotId};
 
 /// A report.

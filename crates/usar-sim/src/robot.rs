@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use parry2d::math::Vector;
 use rne_core::{NeedVector, NeedsError};
+use scenario::Measure;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use teaming::{Level, LevelNeed, Member, NeedId};
 
 use crate::ids::RescueeId;
 use crate::model::{NeedModel, RobotModel};
-use crate::scenario::Measure;
 use crate::vitals::health_factor;
 
 /// A robot slower than this stands, in metres per second.

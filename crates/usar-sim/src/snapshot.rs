@@ -5,10 +5,10 @@
 //! length (u64) and XXH3-128 (u128) of the payload; the payload in postcard's format: the identity of the
 //! trial, then its whole state.
 
+use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_128;
 
-use crate::scenario::Scenario;
 use crate::simulation::{Simulation, State};
 
 /// The first bytes of every snapshot.

@@ -1,31 +1,6 @@
 //! Energy and health: pure functions for the costs of a robot's actions and for the effect of its health.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-/// Costs of moving or of radiation, in the unit of the scenario's costs (percent of the robot's own maximum,
-/// or points). The three add up.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Rates {
-    /// Per simulation step, as the paper prints it (energy: a step in which the robot moves; HP: a step
-    /// inside a zone).
-    pub per_step: f64,
-    /// Per metre travelled (HP: inside a zone).
-    pub per_metre: f64,
-    /// Per second (energy: of duty, at rest places excepted; HP: inside a zone).
-    pub per_second: f64,
-}
-
-/// What work costs, in the same unit.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct WorkRates {
-    /// Energy per second of loading.
-    pub energy_per_second: f64,
-    /// HP per second in the area of the robot's own task.
-    pub hp_per_second: f64,
-}
+use scenario::Rates;
 
 /// Energy spent in one step of `dt` seconds, in the unit of the rates.
 pub(crate) fn energy_cost(rates: &Rates, moving: bool, metres: f64, dt: f64) -> f64 {

@@ -3,11 +3,11 @@
 
 use std::alloc::System;
 
+use scenario::Scenario;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use teaming::{Deadline, Session};
 use usar_sim::conflict::DelayCause;
 use usar_sim::hash::PERIOD_S;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
 

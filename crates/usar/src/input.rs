@@ -7,9 +7,9 @@ use experiments::Failure;
 use experiments::experiment::{Case, Experiment};
 use experiments::sweep::folder::Folder;
 use ron_tree::Node;
+use scenario::{Problem, Scenario};
 use teaming::Registry;
 use usar_sim::model::Layout;
-use usar_sim::scenario::{Problem, Scenario};
 
 use crate::running::tell;
 

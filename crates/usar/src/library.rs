@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 
-use usar_sim::scenario::{CARRIED, is_file};
+use scenario::{CARRIED, is_file};
 
 /// Texts of files of the folder `scenarios/`, by their names.
 macro_rules! files {
@@ -14,7 +14,7 @@ macro_rules! files {
 
 /// From now on, the scenarios that the program carries can be read by their paths.
 pub fn carry() {
-    usar_sim::scenario::carry(FILES);
+    scenario::carry(FILES);
 }
 
 /// Names and texts of the carried files: scenarios, and the sweep files that belong to them.

@@ -10,10 +10,10 @@ use std::time::Instant;
 
 use experiments::Failure;
 use experiments::experiment::PolicySpec;
+use scenario::Scenario;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use teaming::{PolicyError, Session, TrialStart};
 use terminal_size::terminal_size_of;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use crate::printable::Printable;

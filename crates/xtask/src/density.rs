@@ -3,7 +3,7 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use usar_sim::scenario::{
+use scenario::{
     DebrisFile, DebrisShape, InitialLevels, Normal, Point, Row, Scenario, ScenarioFile, TaskFile,
 };
 

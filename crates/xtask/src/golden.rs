@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use crate::docs::place;

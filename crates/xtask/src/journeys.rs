@@ -1,10 +1,10 @@
 //! The requirements on every trial of the random worlds, and how violations are counted.
 
+use scenario::{LayoutError, Scenario};
 use thiserror::Error;
 use usar_sim::conflict::DelayCause;
 use usar_sim::record::{RobotRecord, Status, TrialRecord};
 use usar_sim::robot::STANDING_MPS;
-use usar_sim::scenario::{LayoutError, Scenario};
 use usar_sim::simulation::Simulation;
 
 /// A robot with a goal is counted if it comes no nearer for longer than this, in seconds.

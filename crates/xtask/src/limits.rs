@@ -28,7 +28,7 @@ pub fn page() -> String {
     let mut page = HEAD.to_owned();
     for (title, file, limits) in [
         ("Texts", "crates/ron-tree/src/limits.rs", ron_tree::limits::ALL),
-        ("Scenarios", "crates/usar-sim/src/limits.rs", usar_sim::limits::ALL),
+        ("Scenarios", "crates/scenario/src/limits.rs", scenario::limits::ALL),
         ("Sweeps, tables and results", "crates/experiments/src/limits.rs", experiments::limits::ALL),
     ] {
         let _ = write!(

@@ -1,6 +1,6 @@
 //! Quiet steps against the engine in every step: the same trial both ways.
 
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 /// A trial that ran both ways.

@@ -6,8 +6,8 @@ use std::fmt::Write;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use scenario::Scenario;
 use usar_sim::record::Status;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 /// Simulated time of a trial, in seconds.

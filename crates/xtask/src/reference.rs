@@ -30,7 +30,7 @@ pub fn path() -> PathBuf {
 /// Text of the page.
 pub fn page() -> String {
     let mut page = HEAD.to_owned();
-    let scenario = usar_sim::scenario::scenario_schema();
+    let scenario = scenario::scenario_schema();
     let sweep = experiments::experiment::sweep_schema();
     for (title, schema) in [("A scenario", &scenario), ("A sweep", &sweep)] {
         section(&mut page, title, schema);
@@ -47,7 +47,7 @@ pub fn page() -> String {
 pub fn schemas() -> [(&'static str, String); 2] {
     let text = |schema: &Value| serde_json::to_string_pretty(schema).expect("a schema is JSON") + "\n";
     [
-        ("scenario", text(&usar_sim::scenario::scenario_schema())),
+        ("scenario", text(&scenario::scenario_schema())),
         ("sweep", text(&experiments::experiment::sweep_schema())),
     ]
 }

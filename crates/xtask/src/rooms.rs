@@ -9,12 +9,10 @@ use std::ops::Range;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use scenario::{DebrisFile, DebrisShape, Errand, Movable, Point, Row, Scenario, ScenarioFile, TaskFile};
 use teaming::TaskId;
 use usar_sim::ids::RobotId;
 use usar_sim::model::RestSlots;
-use usar_sim::scenario::{
-    DebrisFile, DebrisShape, Errand, Movable, Point, Row, Scenario, ScenarioFile, TaskFile,
-};
 
 use crate::worlds::{FreeSpace, base};
 

@@ -9,14 +9,14 @@ use parry2d::math::Vector;
 use rand::RngExt;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-use teaming::TaskId;
-use usar_sim::geometry::Outline;
-use usar_sim::ids::RobotId;
-use usar_sim::model::RestSlots;
-use usar_sim::scenario::{
+use scenario::shapes::Outline;
+use scenario::{
     DebrisFile, DebrisShape, Errand, Movable, Point, Row, Scenario, ScenarioFile, TaskFile, ZoneFile,
     parse_ron,
 };
+use teaming::TaskId;
+use usar_sim::ids::RobotId;
+use usar_sim::model::RestSlots;
 
 /// The scenario from which the robots have their roles and needs.
 const PAPER: &str = include_str!("../../../scenarios/paper.ron");

@@ -1,7 +1,7 @@
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Bernoulli, Distribution, Normal};
-use usar_sim::scenario::Words;
+use scenario::Words;
 
 use super::*;
 use crate::experiment::PolicySpec;

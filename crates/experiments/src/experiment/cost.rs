@@ -1,8 +1,8 @@
 //! The cost of trials: bodies times steps.
 
 use ron_tree::limits::Limit;
+use scenario::Scenario;
 use store::Failure;
-use usar_sim::scenario::Scenario;
 
 use super::Experiment;
 use crate::limits::{SWEEP_WORK, TRIAL_WORK};

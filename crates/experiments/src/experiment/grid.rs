@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use scenario::{Scenario, ScenarioFile, Words};
 use store::{Failure, refuse};
 use teaming::Registry;
-use usar_sim::scenario::{Scenario, ScenarioFile, Words};
 
 use super::policy::PolicySpec;
 use super::setting::checked;

@@ -22,7 +22,7 @@ use store::{Failure, refuse};
 use teaming::Registry;
 use xxhash_rust::xxh3::xxh3_128;
 
-use usar_sim::scenario::{Scenario, parse_tree, read_text};
+use scenario::{Scenario, parse_tree, read_text};
 
 pub use cost::{Cost, check_cost};
 pub use file::sweep_schema;

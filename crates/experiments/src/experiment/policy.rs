@@ -4,9 +4,9 @@
 use std::fmt;
 
 use ron_tree::{Node, Value, is_unseen};
+use scenario::{Scenario, is_mistaken};
 use teaming::arrow::Written;
 use teaming::{MadeMeasure, MadePolicy, Registry};
-use usar_sim::scenario::{Scenario, is_mistaken};
 
 use crate::oracle;
 use crate::{Failure, refuse};

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use scenario::Scenario;
 use teaming::arrow::Written;
 use teaming::question::hardest_first;
 use teaming::{GroupSizes, Quota};
-use usar_sim::scenario::Scenario;
 
 use super::Experiment;
 use super::policy::PolicySpec;

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use scenario::{Scenario, ScenarioFile, is_file, parse_ron, parse_tree, read_text};
 use store::{Failure, refuse};
 use teaming::Registry;
-use usar_sim::scenario::{Scenario, ScenarioFile, is_file, parse_ron, parse_tree, read_text};
 
 use super::file::SweepFile;
 use super::setting::{checked, decides, overlapping};

@@ -1,7 +1,7 @@
 //! Fields of scenarios that a sweep or the command line sets.
 
 use ron_tree::{Node, Problem};
-use usar_sim::scenario::{Scenario, ScenarioFile};
+use scenario::{Scenario, ScenarioFile};
 
 use store::Failure;
 

@@ -8,10 +8,10 @@ use std::path::Path;
 
 use ron_tree::limits::Limit;
 use ron_tree::{Node, nearest};
-use teaming::Registry;
-use usar_sim::scenario::{
+use scenario::{
     FORMAT, Location, NOT_MISTAKEN, Scenario, ScenarioFile, beside, is_mistaken, parse_ron, parse_tree,
 };
+use teaming::Registry;
 use xxhash_rust::xxh3::xxh3_128;
 
 use super::file::{Map, SweepFile};

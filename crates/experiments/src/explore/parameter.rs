@@ -3,8 +3,8 @@
 use std::fmt;
 
 use ron_tree::{Node, Problem};
+use scenario::ScenarioFile;
 use store::{Failure, refuse};
-use usar_sim::scenario::ScenarioFile;
 
 /// Significant digits of a candidate value. With so few digits, the log and the calibrated scenario hold
 /// exactly the value that was run.

@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 use ron_tree::Problem;
+use scenario::{Scenario, ScenarioFile};
 use serde::{Deserialize, Serialize};
 use store::{Failure, refuse};
 use thiserror::Error;
-use usar_sim::scenario::{Scenario, ScenarioFile};
 
 use super::Parameter;
 use crate::comparison::{Choice, policy_pairs};

@@ -1,6 +1,6 @@
 //! Tests of the catalogue.
 
-use usar_sim::scenario::Words;
+use scenario::Words;
 
 use super::Catalogue;
 

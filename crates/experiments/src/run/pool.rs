@@ -268,8 +268,8 @@ fn timed_out(longest: Duration, reason: &str) -> Fault {
 mod tests {
     use std::path::Path;
 
+    use scenario::Scenario;
     use teaming::{Asked, Decision, PolicyError, Session};
-    use usar_sim::scenario::Scenario;
 
     use super::super::trial::{TrialSetup, run_trial};
     use super::*;

@@ -108,7 +108,7 @@ impl SharedTrials {
 mod tests {
     use std::path::Path;
 
-    use usar_sim::scenario::Scenario;
+    use scenario::Scenario;
 
     use super::*;
     use crate::experiment::with_settings;

@@ -3,12 +3,12 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use ron_tree::Problem;
+use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use teaming::{Deadline, PolicyError, Session, TrialStart};
 use usar_sim::event::Event;
 use usar_sim::fit::Tables;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 /// The reason of a trial that ended because its policy gave up at the deadline.

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
+use scenario::Scenario;
 use store::Failure;
 use store::files::{self, FileHash, NewFile, file_hash, sync_folder};
 use teaming::arrow::Written;
 use teaming::{PolicyKind, Registry};
-use usar_sim::scenario::Scenario;
 
 use super::dictionary::dictionary;
 use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};

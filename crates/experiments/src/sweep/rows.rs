@@ -1,5 +1,6 @@
 //! The columns of the tables that a sweep writes, and what a row of each is.
 
+use scenario::NeedFile;
 use tables::Kind::{Natural, Number, Text};
 use tables::{About, Cell, Column, Columns, columns};
 use teaming::decision::Protocol;
@@ -9,7 +10,6 @@ use usar_sim::event::ReturnCause;
 use usar_sim::hash::Link;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::{LinkRecord, RobotRecord, TrialRecord};
-use usar_sim::scenario::NeedFile;
 
 use super::line::Finished;
 use super::summary::Summary;

@@ -4,7 +4,7 @@ use foxglove::messages::{
     Color, Point3, PointCloud, SceneEntity, SceneUpdate, Timestamp, TriangleListPrimitive,
 };
 use recording::{Frame, MovedDebris, World};
-use usar_sim::scenario::{DebrisShape, RoleKind};
+use scenario::{DebrisShape, RoleKind};
 
 use super::messages::{WORLD, cube, disc, entity, grey, points, pose, text};
 

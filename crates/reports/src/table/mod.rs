@@ -6,12 +6,12 @@ mod grouping;
 use experiments::comparison::{Comparison, digits, moments_of, short, short_p};
 use experiments::experiment::{Experiment, PolicySpec};
 use experiments::sweep::folder::Folder;
+use scenario::Words;
 use statistics::Moments;
 use tables::{Entry, Format, Table, labelled, or_dash, right, right_or_dash, shown_as};
 use usar_sim::event::ReturnCause;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::TrialRecord;
-use usar_sim::scenario::Words;
 
 pub use effects::{cases_table, differences_table, effects_table, interactions_table};
 pub use grouping::{levels_table, likeness_table};

@@ -4,13 +4,13 @@ use std::ops::Range;
 use std::sync::OnceLock;
 
 use parry2d::math::Vector;
+use scenario::shapes::{Outline, RadiationZone};
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
 use super::known::{KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
 use super::news::{News, Opening, Seen};
 use super::table::Table;
-use crate::geometry::{Outline, RadiationZone};
 use crate::hash::part;
 use crate::ids::RescueeId;
 use crate::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap};

@@ -2,9 +2,8 @@
 
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
+use scenario::shapes::{Outline, RadiationZone};
 use serde::{Deserialize, Serialize};
-
-use crate::geometry::{Outline, RadiationZone};
 
 /// A piece of debris, as reported.
 #[derive(Debug, Clone, Serialize, Deserialize)]

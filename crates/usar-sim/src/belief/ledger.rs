@@ -2,13 +2,13 @@
 
 use std::sync::OnceLock;
 
+use scenario::CostUnit;
 use serde::{Deserialize, Serialize};
 use teaming::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 
 use crate::hash::part;
 use crate::ids::RobotId;
 use crate::robot::Robot;
-use crate::scenario::CostUnit;
 
 /// What the base knows of the rounds.
 #[derive(Debug, Clone, Serialize, Deserialize)]

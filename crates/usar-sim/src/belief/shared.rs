@@ -2,6 +2,7 @@
 //! robot in the field has its own and may hear from its mates. Robots without a group share the belief of the
 //! team at home. What a robot says of itself, the whole team knows.
 
+use scenario::BeliefSharing;
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
@@ -11,34 +12,38 @@ use crate::ids::RobotId;
 use crate::planning::Inflation;
 use crate::report::{Report, Speaker};
 use crate::robot::Robot;
-use crate::scenario::BeliefSharing;
 
 /// The place of a belief in the field: of a group, or of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Holder(u32);
 
-impl BeliefSharing {
+impl Holder {
     /// Number of beliefs in the field.
-    pub(crate) fn holders(self, tasks: usize, robots: usize) -> usize {
-        match self {
-            Self::WithGroup => tasks,
-            Self::WithNobody | Self::ByRadio => robots,
+    pub(crate) fn count(sharing: BeliefSharing, tasks: usize, robots: usize) -> usize {
+        match sharing {
+            BeliefSharing::WithGroup => tasks,
+            BeliefSharing::WithNobody | BeliefSharing::ByRadio => robots,
         }
     }
 
     /// The belief of a robot in the group of a task.
-    pub fn holder(self, robot: RobotId, task: TaskId) -> Holder {
-        match self {
-            Self::WithGroup => Holder(u32::from(task.0)),
-            Self::WithNobody | Self::ByRadio => Holder(robot.0),
+    pub fn of(sharing: BeliefSharing, robot: RobotId, task: TaskId) -> Self {
+        match sharing {
+            BeliefSharing::WithGroup => Self(u32::from(task.0)),
+            BeliefSharing::WithNobody | BeliefSharing::ByRadio => Self(robot.0),
         }
     }
 
     /// The beliefs of these members of the group of a task, each once. A group has one without members, too.
-    pub(crate) fn holders_in(self, task: TaskId, members: &[RobotId]) -> impl Iterator<Item = Holder> {
-        let of_group = (self == Self::WithGroup).then_some(Holder(u32::from(task.0)));
-        let own = members.iter().filter(move |_| self != Self::WithGroup);
-        of_group.into_iter().chain(own.map(|robot| Holder(robot.0)))
+    pub(crate) fn all_in(
+        sharing: BeliefSharing,
+        task: TaskId,
+        members: &[RobotId],
+    ) -> impl Iterator<Item = Self> {
+        let is_shared = sharing == BeliefSharing::WithGroup;
+        let of_group = is_shared.then_some(Self(u32::from(task.0)));
+        let own = members.iter().filter(move |_| !is_shared);
+        of_group.into_iter().chain(own.map(|robot| Self(robot.0)))
     }
 }
 

@@ -1,12 +1,12 @@
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
+use scenario::BeliefSharing;
 use teaming::TaskId;
 
 use super::*;
 use crate::ids::{RescueeId, RobotId};
 use crate::planning::Inflation;
 use crate::report::{Report, Speaker, Statement};
-use crate::scenario::BeliefSharing;
 
 fn belief() -> Belief {
     Belief::nothing(&Inflation { radii: vec![0.4], clearance: 0.15 })
@@ -73,7 +73,7 @@ fn pooled_beliefs_hold_the_newest_of_each_and_survive_a_snapshot() {
     let inflation = Inflation { radii: vec![0.4, 0.8], clearance: 0.15 };
     let mut beliefs = Beliefs::nothing(2, &inflation, Vec::new());
     let sharing = BeliefSharing::WithGroup;
-    let group = |robot: RobotId| (robot.0 < 2).then(|| sharing.holder(robot, TaskId(robot.0 as u16)));
+    let group = |robot: RobotId| (robot.0 < 2).then(|| Holder::of(sharing, robot, TaskId(robot.0 as u16)));
     let by = |robot: u32, report: Report| Report { from: Speaker::Robot(RobotId(robot)), ..report };
     beliefs.hear(&by(0, ball(0, 10.0, 1)), group);
     beliefs.hear(&by(1, ball(0, 20.0, 2)), group);

@@ -3,7 +3,7 @@
 
 use super::Mover;
 use super::passing::PASSING_RANGE_M;
-use crate::geometry::{ByX, Spot};
+use crate::by_x::{ByX, Spot};
 
 /// Robots near one another.
 #[derive(Default)]

@@ -2,8 +2,9 @@
 
 use std::cmp::Ordering;
 
+use scenario::PriorityRule;
+
 use crate::ids::RobotId;
-use crate::scenario::PriorityRule;
 
 /// A claim to the right of way. The smaller key goes first; no two robots have the same.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,13 +1,13 @@
 //! Robots and a resolver for unit tests.
 
 use parry2d::math::Vector;
+use scenario::Scenario;
 
 use super::reciprocal::Reciprocal;
 use super::{Directive, Mover, PriorityKey, Scratch, Step};
 use crate::event::EventLog;
 use crate::ids::RobotId;
 use crate::model::{Brakes, ReciprocalModel, RightOfWayModel};
-use crate::scenario::Scenario;
 
 /// A ground robot of 0.4 m radius with this preferred velocity, whose route leads 10 m in that direction.
 pub(super) fn mover(id: u32, at: [f32; 2], preferred: [f32; 2]) -> Mover<'static> {

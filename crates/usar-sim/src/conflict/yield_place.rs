@@ -265,8 +265,8 @@ fn neighbours(cell: u32) -> impl Iterator<Item = (u32, u32)> {
 mod tests {
     use super::super::testing::mover;
     use super::*;
-    use crate::geometry::Outline;
     use crate::planning::{ObstacleKey, ObstacleMap};
+    use scenario::shapes::Outline;
 
     fn wall(number: u32, center: [f32; 2], size: [f32; 2]) -> KnownObstacle {
         let shape = parry2d::shape::SharedShape::cuboid(size[0] / 2.0, size[1] / 2.0);

@@ -108,7 +108,7 @@ impl Claims {
         if spare <= 0 {
             return;
         }
-        let holder = |id: RobotId| scene.model.mission.belief_sharing.holder(id, task);
+        let holder = |id: RobotId| Holder::of(scene.model.mission.belief_sharing, id, task);
         let seeking: SmallVec<[RobotId; 16]> = seeking.collect();
         let mut holders: SmallVec<[Holder; 16]> = seeking.iter().copied().map(holder).collect();
         holders.dedup();

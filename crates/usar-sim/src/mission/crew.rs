@@ -1,5 +1,6 @@
 //! The crew: what each robot does, and the groups in which robots work.
 
+use scenario::{RestAtHome, RoundEnd};
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
@@ -13,7 +14,6 @@ use crate::ids::RobotId;
 use crate::model::{MissionModel, Model};
 use crate::navigation::Goal;
 use crate::robot::Robot;
-use crate::scenario::{RestAtHome, RoundEnd};
 use crate::telemetry::Presence;
 
 /// The group of one task in the current round.
@@ -61,7 +61,7 @@ impl Crew {
 
     /// The belief on which a robot acts; none for the belief of the team at home.
     pub(crate) fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {
-        Some(model.mission.belief_sharing.holder(robot, self.group_of(robot)?))
+        Some(Holder::of(model.mission.belief_sharing, robot, self.group_of(robot)?))
     }
 
     pub(super) fn agent(&mut self, robot: RobotId) -> &mut Agent {

@@ -24,6 +24,7 @@ pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause}
 pub use scene::Scene;
 pub use settle::Sharing;
 
+use crate::belief::Holder;
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
@@ -188,7 +189,7 @@ impl Mission {
         if field.still_searching == 0 && field.known_rescuees == 0 {
             let sharing = scene.model.mission.belief_sharing;
             let knows = |id: RobotId| {
-                let holder = sharing.holder(id, task);
+                let holder = Holder::of(sharing, id, task);
                 let has_room = scene.beliefs.team[id.index()].free_capacity() > 0;
                 has_room && self.claims.on_offer(task, holder, scene).next().is_some()
             };

@@ -1,11 +1,11 @@
 //! The question to the policy: how the fit robots are to be grouped.
 
+use scenario::EmptyTasks;
+use scenario::seed::{Purpose, stream};
 use teaming::{GroupSizes, Member, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
 
 use crate::belief::Belief;
 use crate::model::{Model, NeedModel, TaskModel};
-use crate::scenario::EmptyTasks;
-use crate::seed::{Purpose, stream};
 
 /// The question how these robots are to be grouped.
 pub(super) fn question(model: &Model, round: u32, belief: &Belief, members: Vec<Member>) -> Question {

@@ -1,14 +1,14 @@
 //! Between rounds: the end of one, the opening of the next, and the departure of the groups.
 
+use scenario::LevelSource;
 use teaming::Assignment;
 
 use super::question::question;
 use super::{Activity, Mission, Pending, Scene};
-use crate::belief::Beliefs;
+use crate::belief::{Beliefs, Holder};
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::robot::Robot;
-use crate::scenario::LevelSource;
 use crate::telemetry::{Now, Telemetry};
 
 impl Mission {
@@ -111,7 +111,7 @@ impl Mission {
         scene.beliefs.ledger.begin(self.round, &groups, scene.step as f64 * scene.model.dt_s());
         scene.log.push(Event::RoundStarted { round: self.round, groups: groups.clone() });
         for (task, members) in scene.model.task_ids().zip(groups) {
-            let holders = scene.model.mission.belief_sharing.holders_in(task, &members);
+            let holders = Holder::all_in(scene.model.mission.belief_sharing, task, &members);
             holders.for_each(|holder| scene.beliefs.depart(holder));
             self.crew.send_out(task, members, scene.model, &scene.beliefs.team);
         }

@@ -1,9 +1,10 @@
 //! The decisions of a round, as pure functions: which robots take part, which turn back, and when a group
 //! goes home.
 
+use scenario::{RestFills, TurnBack};
+
 use crate::event::{ReturnCause, TurnBackCause};
 use crate::model::{LowLevel, MissionModel};
-use crate::scenario::{RestFills, TurnBack};
 
 /// A robot's levels before a round and the cost of its costliest round, in percent (points).
 #[derive(Debug, Clone, Copy)]
@@ -100,7 +101,7 @@ pub fn return_cause(field: &FieldState) -> Option<ReturnCause> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::MissionRules;
+    use scenario::MissionRules;
 
     fn compiled(rules: MissionRules) -> MissionModel {
         MissionModel::compile(&rules, 1.0, 1.0)

@@ -4,7 +4,7 @@ use parry2d::math::Vector;
 use teaming::TaskId;
 
 use super::GIVE_UP_S;
-use crate::belief::Beliefs;
+use crate::belief::{Beliefs, Holder};
 use crate::conflict::Directive;
 use crate::event::EventLog;
 use crate::ids::{RescueeId, RobotId};
@@ -41,7 +41,7 @@ pub struct Scene<'s> {
 impl Scene<'_> {
     /// Where a rescuee waits, as a robot in the group of a task believes.
     pub(super) fn place_of(&self, robot: RobotId, task: TaskId, rescuee: RescueeId) -> Option<Vector> {
-        let holder = self.model.mission.belief_sharing.holder(robot, task);
+        let holder = Holder::of(self.model.mission.belief_sharing, robot, task);
         self.beliefs.of(Some(holder)).rescuees.get(rescuee.index())?.waits_at
     }
 

@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use scenario::LoadAtRest;
 use teaming::question::MAX_TASKS;
 
 use super::round::{levels_after_rest, rest_steps};
@@ -11,7 +12,6 @@ use crate::event::{Event, Place};
 use crate::ids::{RescueeId, RobotId};
 use crate::intent::{Intent, Outcome};
 use crate::report::{Report, Speaker, Statement};
-use crate::scenario::LoadAtRest;
 
 /// For each task, the member that shares its resources: found on demand, and forgotten when a resource is
 /// used.

@@ -2,9 +2,8 @@
 //! robots.
 
 use parry2d::math::Vector;
-
-use crate::geometry::vector;
-use crate::scenario::{RoleKind, Scenario, TaskFile};
+use scenario::shapes::vector;
+use scenario::{RoleKind, Scenario, TaskFile};
 
 /// Least distance between the lanes of a sweep, in metres: a robot that sees only a few millimetres cannot
 /// comb an area.

@@ -1,7 +1,9 @@
 //! What moving, radiation and work cost, compiled.
 
-use crate::scenario::{CostUnit, Costs};
-use crate::vitals::{Rates, energy_cost, hp_cost};
+use scenario::Rates;
+use scenario::{CostUnit, Costs};
+
+use crate::vitals::{energy_cost, hp_cost};
 
 /// What moving, radiation and work cost.
 #[derive(Debug, Clone, Copy)]

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
+use scenario::shapes::Outline;
+use scenario::{DebrisFile, Movable};
 
 use super::Layout;
-use crate::geometry::Outline;
-use crate::scenario::{DebrisFile, Movable};
 
 /// The fixed properties of one piece of debris.
 #[derive(Clone)]

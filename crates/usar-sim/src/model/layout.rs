@@ -6,17 +6,17 @@ use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
-use teaming::{RoleId, TaskId};
-
-use super::places::{RestSlots, rescuee_places};
-use crate::geometry::{Outline, Places, vector};
-use crate::ids::RobotId;
-use crate::planning::Planner;
-use crate::scenario::{
+use scenario::seed::{Purpose, normal, stream};
+use scenario::shapes::{Outline, Places, vector};
+use scenario::{
     Amount, DebrisFile, DebrisShape, Happening, LayoutError, Normal, Point, RoleKind, SampledCounts,
     Scenario, TaskFile, ZoneFile,
 };
-use crate::seed::{Purpose, normal, stream};
+use teaming::{RoleId, TaskId};
+
+use super::places::{RestSlots, rescuee_places};
+use crate::ids::RobotId;
+use crate::planning::Planner;
 
 /// Draws for one sampled thing before the layout fails for lack of room.
 pub(super) const SAMPLING_TRIES: u32 = 500;
@@ -321,7 +321,7 @@ impl KeepClear {
         let radius = scenario.largest_radius_m(RoleKind::Ground);
         let point = |v: Vector| [f64::from(v.x), f64::from(v.y)];
         let mut list: Vec<(Point, f64)> =
-            scenario.team.iter().flat_map(crate::scenario::Row::places).map(|home| (home, radius)).collect();
+            scenario.team.iter().flat_map(scenario::Row::places).map(|home| (home, radius)).collect();
         let block = RestSlots::of(scenario);
         for task in (0..).take(scenario.tasks.len()).map(TaskId) {
             let slots = (0..scenario.robots()).map(|i| block.at(task, RobotId(i)));

@@ -3,10 +3,10 @@
 use std::ops::Deref;
 
 use parry2d::math::Vector;
+use scenario::shapes::vector;
+use scenario::{EmptyBattery, Errand, MissionRules, TurnBack};
 
-use crate::geometry::vector;
 use crate::ids::RobotId;
-use crate::scenario::{EmptyBattery, Errand, MissionRules, TurnBack};
 
 /// A robot is late, and no longer gets on, once this share of its time is over. Whenever a robot for which it
 /// waits gets on, the rest of its time begins anew.

@@ -20,6 +20,8 @@ mod timeline;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
+use scenario::shapes::{RadiationZone, vector};
+use scenario::{Measure, NeedFile, Scenario, ZoneFile};
 use teaming::{Need, TaskId};
 
 pub use area::TaskArea;
@@ -36,10 +38,8 @@ pub use task::TaskModel;
 pub use telemetry::{BlackoutModel, Liar, LieModel, MediumModel, TelemetryModel};
 pub use timeline::{Action, Due};
 
-use crate::geometry::{RadiationZone, vector};
 use crate::hash::PERIOD_S;
 use crate::planning::{Inflation, Planner};
-use crate::scenario::{Measure, NeedFile, Scenario, ZoneFile};
 
 /// Everything that is fixed in one trial.
 #[derive(Debug)]

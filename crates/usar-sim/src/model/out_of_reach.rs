@@ -1,11 +1,11 @@
 //! What robots cannot reach from the start of a trial on. It is allowed, and worth a note.
 
 use parry2d::math::Vector;
+use scenario::shapes::{Outline, vector};
+use scenario::{Errand, Problem, RoleFile, RoleKind, Scenario, TaskFile};
 
 use super::{Layout, rescuee_places};
-use crate::geometry::{Outline, vector};
 use crate::planning::{Planner, Ways};
-use crate::scenario::{Errand, Problem, RoleFile, RoleKind, Scenario, TaskFile};
 
 impl Layout {
     /// The first place of each errand to which no way is wide enough for its robot, and tasks whose rescuees

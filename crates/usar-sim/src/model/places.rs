@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use parry2d::math::Vector;
+use scenario::shapes::vector;
+use scenario::{Happening, Point, RoleKind, Scenario, TaskFile};
 use teaming::TaskId;
 
-use crate::geometry::vector;
 use crate::ids::RobotId;
-use crate::scenario::{Happening, Point, RoleKind, Scenario, TaskFile};
 
 /// Free distance between two robots at a rest place, in metres, so that others can pass between them.
 const REST_GAP_M: f64 = 1.2;

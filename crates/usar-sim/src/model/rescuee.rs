@@ -1,11 +1,11 @@
 //! The fixed properties of one rescuee.
 
 use parry2d::math::Vector;
+use scenario::Scenario;
 use teaming::TaskId;
 
 use super::places::{rescuee_blocks, rescuee_places};
 use crate::ids::RescueeId;
-use crate::scenario::Scenario;
 
 /// The fixed properties of one rescuee.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

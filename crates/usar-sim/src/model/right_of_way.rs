@@ -2,9 +2,8 @@
 //! here.
 
 use parry2d::math::Vector;
-
-use crate::geometry::vector;
-use crate::scenario::{PriorityRule, ResolverRule, Scenario};
+use scenario::shapes::vector;
+use scenario::{PriorityRule, ResolverRule, Scenario};
 
 /// How long a deadlocked set backs off, in seconds.
 const BACK_OFF_S: f64 = 1.0;

@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
+use scenario::{RoleFile, RoleKind, Scenario};
 use teaming::{RoleId, TaskId};
 
 use super::RobotStart;
 use super::places::RestSlots;
 use crate::ids::RobotId;
-use crate::scenario::{RoleFile, RoleKind, Scenario};
 
 /// Share of the drive's acceleration that robots plan to brake with; the rest is in reserve.
 pub(crate) const PLANNED_BRAKING: f32 = 0.8;

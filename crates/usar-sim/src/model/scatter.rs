@@ -1,11 +1,11 @@
 //! Places of scattered things, drawn anew in every trial.
 
 use rand::RngExt;
+use scenario::seed::{Purpose, stream};
+use scenario::shapes::{Outline, Places, vector};
+use scenario::{DebrisFile, DebrisShape, LayoutError, Placement, Point, Scatter, Scattered, ZoneFile};
 
 use super::layout::{Attempt, KeepClear, Layout, SAMPLING_TRIES};
-use crate::geometry::{Outline, Places, vector};
-use crate::scenario::{DebrisFile, DebrisShape, LayoutError, Placement, Point, Scatter, Scattered, ZoneFile};
-use crate::seed::{Purpose, stream};
 
 impl Layout {
     /// Places the things of all entries of `scatter`, entry by entry.

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use parry2d::math::Vector;
+use scenario::{Scenario, TaskFile};
 use teaming::{Task, TaskId};
 
 use super::TaskArea;
 use super::rescuee::RescueeModel;
-use crate::scenario::{Scenario, TaskFile};
 
 /// The fixed properties of one task.
 #[derive(Debug)]

@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use parry2d::math::Vector;
 use rand::RngExt;
+use scenario::seed::{Purpose, stream};
+use scenario::shapes::{Outline, vector};
+use scenario::{
+    AtHome, Channel, Gauge, Happening, LevelSource, Lie, Loss, Mates, MediumRules, PathLoss, Scenario, Who,
+    Witness, rounded_share,
+};
 use serde::{Deserialize, Serialize};
 use teaming::{Expected, NeedId};
 
 use super::{Layout, RobotModel};
-use crate::geometry::{Outline, vector};
 use crate::ids::RobotId;
-use crate::scenario::{
-    AtHome, Channel, Gauge, Happening, LevelSource, Lie, Loss, Mates, MediumRules, PathLoss, Scenario, Who,
-    Witness, rounded_share,
-};
-use crate::seed::{Purpose, stream};
 
 /// How the robots of a trial report, are heard, and lie.
 #[derive(Debug, Clone)]
@@ -104,12 +104,6 @@ pub struct BlackoutModel {
     pub radius: f32,
     /// From when to when, in seconds.
     pub window_s: [f64; 2],
-}
-
-impl std::fmt::Debug for Outline {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "outline at {:?}", self.pose.translation)
-    }
 }
 
 impl TelemetryModel {

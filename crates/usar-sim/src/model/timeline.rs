@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
+use scenario::{Happening, Scenario};
 use teaming::TaskId;
 
 use super::Layout;
 use super::places::rescuee_blocks;
 use crate::ids::RobotId;
-use crate::scenario::{Happening, Scenario};
 
 /// An action of the timeline, with things given by their numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,7 +84,7 @@ pub(super) fn timeline(scenario: &Scenario, layout: &Layout) -> Vec<Due> {
             Happening::TaskEnds(name) => Action::End(task(name)),
         })
     };
-    let due = |(number, moment): (usize, &crate::scenario::Moment)| {
+    let due = |(number, moment): (usize, &scenario::Moment)| {
         let step = (moment.at_s / scenario.dt_s).round() as u64;
         action((number, &moment.event)).map(|action| Due { step, action })
     };
@@ -93,6 +93,6 @@ pub(super) fn timeline(scenario: &Scenario, layout: &Layout) -> Vec<Due> {
 
 /// The number of the lie of an event among all lies of the trial: those of the list of deceit come first.
 fn lie_of(scenario: &Scenario, event: usize) -> usize {
-    let is_lie = |moment: &&crate::scenario::Moment| matches!(moment.event, Happening::RobotLies { .. });
+    let is_lie = |moment: &&scenario::Moment| matches!(moment.event, Happening::RobotLies { .. });
     scenario.deceit.len() + scenario.timeline[..event].iter().filter(is_lie).count()
 }

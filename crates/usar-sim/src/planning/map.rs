@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use parry2d::math::Vector;
+use scenario::Scenario;
+use scenario::shapes::Places;
 
 use super::obstacles::{KnownObstacle, ObstacleKey, contains};
-use crate::geometry::Places;
-use crate::scenario::Scenario;
 
 /// How much obstacles are inflated: by the radius of each class of ground robots, and by their clearance.
 #[derive(Debug, Clone)]
@@ -132,8 +132,8 @@ impl FromIterator<KnownObstacle> for ObstacleMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Outline;
     use crate::planning::obstacles::crosses;
+    use scenario::shapes::Outline;
 
     fn disc(number: u32, at: [f32; 2]) -> KnownObstacle {
         KnownObstacle::new(ObstacleKey::Debris(number), &Outline::disc(at.into(), 1.0), 0.4, 0.15)

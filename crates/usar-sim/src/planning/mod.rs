@@ -28,9 +28,9 @@ pub use passage::{Passage, Walls};
 pub use route::Route;
 
 use parry2d::math::Vector;
+use scenario::shapes::{Outline, RadiationZone, vector};
+use scenario::{RoleKind, Scenario};
 
-use crate::geometry::{Outline, RadiationZone, vector};
-use crate::scenario::{RoleKind, Scenario};
 use obstacles::ZONE_MARGIN_M;
 use search::Search;
 use tangents::Wanted;

@@ -3,8 +3,8 @@
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::Vector;
 use parry2d::shape::SharedShape;
+use scenario::shapes::Outline;
 
-use crate::geometry::Outline;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::xxh3_64;
 

@@ -1,9 +1,8 @@
 //! A route: waypoints that a robot passes one after the other.
 
 use parry2d::math::Vector;
+use scenario::shapes::RadiationZone;
 use serde::{Deserialize, Serialize};
-
-use crate::geometry::RadiationZone;
 
 /// A robot has passed a waypoint when it is within this distance, in metres.
 const PASSED_M: f32 = 0.25;

@@ -99,8 +99,8 @@ impl<'a> Search<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Outline;
     use crate::planning::ObstacleKey;
+    use scenario::shapes::Outline;
 
     #[test]
     fn points_in_the_strip_along_the_border_find_a_free_point_beside_what_stands_there() {

@@ -1,10 +1,11 @@
 //! What robots spend, and their end when nothing is left.
 
+use scenario::CostUnit;
+
 use crate::event::Event;
 use crate::metrics::Metrics;
 use crate::model::MissionModel;
 use crate::robot::{Condition, Robot};
-use crate::scenario::CostUnit;
 
 /// What a robot can lose of energy and HP, in percent: no more than it has, but for energy where robots go on
 /// with an empty battery.

@@ -18,6 +18,7 @@ mod view;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
+use scenario::{LayoutError, Scenario};
 use teaming::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, TrueLevels};
 use thiserror::Error;
 
@@ -26,7 +27,6 @@ use crate::invariant::{Invariants, Overlaps};
 use crate::mission::Ending;
 use crate::record::{DecisionRecord, HeardRecord, RobotRecord, Status, TaskRecord, TrialRecord};
 use crate::robot::Robot;
-use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::world::World;
 

@@ -1,10 +1,11 @@
 //! What group-mates tell one another by radio of the things in the field.
 
+use scenario::BeliefSharing;
+
 use super::State;
 use crate::ids::RescueeId;
 use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};
-use crate::scenario::BeliefSharing;
 
 impl State {
     /// Robots tell their group-mates what they noticed, and liars what they make up.

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use scenario::{LayoutError, Scenario};
+
 use crate::model::{Layout, Model};
-use crate::scenario::{LayoutError, Scenario};
 
 /// What a trial is set up from: its scenario, what was drawn from its seed, and the model compiled from both.
 /// Nothing in it changes.

@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use parry2d::math::Vector;
 use rayon::prelude::*;
+use scenario::LevelSource;
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
 use super::charge::{bearable, last_event, spend};
 use super::faults::Faults;
 use super::moments::Moments;
-use crate::belief::Beliefs;
+use crate::belief::{Beliefs, Holder};
 use crate::conflict::{self, Delay, MANY_ROBOTS, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::hash::{ABSENT, HashChain, PARTS, part};
@@ -21,7 +22,6 @@ use crate::navigation::{Navigator, Outlook};
 use crate::record::DecisionRecord;
 use crate::report::{Report, Track};
 use crate::robot::{Robot, STANDING_MPS};
-use crate::scenario::LevelSource;
 use crate::sensors::{base, look_around, team_mates};
 use crate::tally::{Tally, delay_cause};
 use crate::telemetry::Telemetry;
@@ -104,7 +104,7 @@ impl State {
     /// The state before the first step: all robots at home.
     pub(super) fn new(model: &Model) -> Self {
         let world = World::build(model);
-        let holders = model.mission.belief_sharing.holders(model.tasks.len(), model.robots.len());
+        let holders = Holder::count(model.mission.belief_sharing, model.tasks.len(), model.robots.len());
         let tallies = model.robots.iter().map(|robot| Tally::new(robot.initial_levels)).collect();
         Self {
             step: 0,

@@ -1,12 +1,12 @@
 //! The timeline of a trial: each event of the scenario happens at the beginning of its step.
 
 use parry2d::query::distance;
+use scenario::shapes::Outline;
 use teaming::TaskId;
 
 use super::State;
 use super::charge::{bearable, last_event, spend};
 use crate::event::Event;
-use crate::geometry::Outline;
 use crate::ids::RobotId;
 use crate::model::{Action, DebrisModel, Model};
 use crate::report::{Report, Speaker, Statement};

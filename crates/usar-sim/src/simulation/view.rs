@@ -1,9 +1,10 @@
 //! What can be seen of a trial from outside.
 
+use scenario::Scenario;
 use teaming::{Question, TaskId};
 
 use super::{Simulation, State};
-use crate::belief::{Belief, Beliefs};
+use crate::belief::{Belief, Beliefs, Holder};
 use crate::conflict::Delay;
 use crate::event::Event;
 use crate::ids::RobotId;
@@ -12,7 +13,6 @@ use crate::mission::Mission;
 use crate::model::{Layout, Model};
 use crate::navigation::Navigator;
 use crate::record::{DecisionRecord, HeardRecord, whole_question};
-use crate::scenario::Scenario;
 use crate::tally::Tally;
 use crate::world::World;
 
@@ -84,7 +84,8 @@ impl Simulation {
     pub fn beliefs_of(&self, group: Option<TaskId>) -> impl Iterator<Item = &Belief> {
         let sharing = self.model().mission.belief_sharing;
         let members = group.map_or(&[][..], |task| &self.mission().crew.groups[task.index()].members);
-        let in_field = group.into_iter().flat_map(move |task| sharing.holders_in(task, members).map(Some));
+        let in_field =
+            group.into_iter().flat_map(move |task| Holder::all_in(sharing, task, members).map(Some));
         let at_home = group.is_none().then_some(None);
         at_home.into_iter().chain(in_field).map(|holder| self.beliefs().of(holder))
     }

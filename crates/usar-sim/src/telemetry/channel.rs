@@ -6,13 +6,13 @@ use parry2d::math::Vector;
 use parry2d::query::Ray;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
+use scenario::seed::{Purpose, normal, stream_at};
+use scenario::shapes::Outline;
+use scenario::{Loss, PathLoss};
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::Outline;
 use crate::ids::RobotId;
 use crate::model::MediumModel;
-use crate::scenario::{Loss, PathLoss};
-use crate::seed::{Purpose, normal, stream_at};
 
 /// The state of the channel, and what became of the messages on each link.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -1,9 +1,8 @@
 //! Gauges: what a robot reads of its own levels.
 
 use rand::RngExt;
-
-use crate::scenario::Gauge;
-use crate::seed::{Purpose, normal, stream_at};
+use scenario::Gauge;
+use scenario::seed::{Purpose, normal, stream_at};
 
 /// Which reading of which gauge.
 #[derive(Debug, Clone, Copy)]

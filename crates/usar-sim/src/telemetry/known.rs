@@ -1,10 +1,10 @@
 //! What the base knows of robots without a report: their bodies, and what it expects of their levels.
 
+use scenario::RestFills;
 use teaming::{Body, Evidence, Member, TrueLevels};
 
 use crate::model::{Model, RobotModel};
 use crate::robot::Robot;
-use crate::scenario::RestFills;
 
 /// What was heard, with what the base knows besides.
 pub(crate) fn known(model: &Model, heard: Evidence) -> Evidence {

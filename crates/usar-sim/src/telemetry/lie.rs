@@ -1,13 +1,13 @@
 //! Lies: what a robot says in the place of what it read, or of what it saw.
 
 use rand::RngExt;
+use scenario::seed::{Purpose, stream_at};
+use scenario::{Lie, Mates};
 use serde::{Deserialize, Serialize};
 use teaming::Rating;
 
 use crate::ids::RobotId;
 use crate::model::{LieModel, TelemetryModel};
-use crate::scenario::{Lie, Mates};
-use crate::seed::{Purpose, stream_at};
 
 /// Mates that flip their ratings take a speed that is so far from the one said, as a share of top speed, for
 /// the end of the scale. It is the default tolerance of the estimators.

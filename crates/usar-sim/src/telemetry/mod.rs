@@ -15,6 +15,7 @@ mod speech;
 mod witness;
 
 use rne_core::NeedVector;
+use scenario::{Lie, Measure};
 use serde::{Deserialize, Serialize};
 use teaming::{Evidence, LevelReport, Member, Rating, RoundOutcome, TrueLevels};
 
@@ -27,7 +28,6 @@ use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::model::{Model, TelemetryModel};
 use crate::robot::Robot;
-use crate::scenario::{Lie, Measure};
 use channel::Sending;
 use heard::Trip;
 use lie::{Told, said_of_mate};

@@ -5,6 +5,8 @@ use std::ops::Range;
 
 use parry2d::math::Vector;
 use rand::RngExt;
+use scenario::Lie;
+use scenario::seed::{Purpose, stream_at};
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
@@ -15,8 +17,6 @@ use crate::ids::RobotId;
 use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};
 use crate::robot::Robot;
-use crate::scenario::Lie;
-use crate::seed::{Purpose, stream_at};
 
 /// A report for a group-mate that is under way.
 #[derive(Clone, Serialize, Deserialize)]

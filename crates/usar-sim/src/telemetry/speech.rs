@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use scenario::Lie;
 use teaming::{LevelReport, NeedId};
 
 use super::gauge::{Reading, read};
@@ -11,7 +12,6 @@ use crate::event::EventLog;
 use crate::ids::RobotId;
 use crate::model::{LieModel, TelemetryModel};
 use crate::robot::Robot;
-use crate::scenario::Lie;
 
 /// Levels and needs of one robot have numbers of their own in streams of random numbers.
 const TOPICS: u64 = 128;

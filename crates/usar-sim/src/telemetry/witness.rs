@@ -1,12 +1,12 @@
 //! Witnesses: how fast robots see their group-mates go.
 
+use scenario::seed::{Purpose, normal, stream_at};
 use serde::{Deserialize, Serialize};
 use teaming::Rating;
 
 use crate::ids::RobotId;
 use crate::model::TelemetryModel;
 use crate::robot::Robot;
-use crate::seed::{Purpose, normal, stream_at};
 
 /// What a robot saw of a mate in this round.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

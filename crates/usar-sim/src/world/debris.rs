@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use parry2d::bounding_volume::Aabb;
 use parry2d::math::{Pose, Vector};
+use scenario::shapes::Outline;
 use serde::{Deserialize, Serialize};
 
-use crate::geometry::Outline;
 use crate::model::DebrisModel;
 
 /// A pushed piece is noticed once it lies this far, in metres, from where it was last seen.

@@ -8,12 +8,12 @@ mod zones;
 use parry2d::bounding_volume::BoundingVolume;
 use parry2d::math::{Pose, Vector};
 use parry2d::query::distance;
+use scenario::shapes::Places;
 use serde::{Deserialize, Serialize};
 
 pub use debris::Debris;
 pub use rescuee::{Rescuee, RescueeState, Rescuees};
 
-use crate::geometry::Places;
 use crate::model::Model;
 use crate::physics::{DebrisBody, Physics, RobotBody};
 use crate::robot::{Robot, STANDING_MPS};

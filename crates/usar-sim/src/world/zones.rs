@@ -1,8 +1,8 @@
 //! In how many radiation zones each robot is.
 
 use parry2d::math::Vector;
+use scenario::shapes::RadiationZone;
 
-use crate::geometry::RadiationZone;
 use crate::robot::Robot;
 
 /// Distance to a border in which rounding is lost, in metres.

@@ -1,7 +1,7 @@
 //! Contacts as the invariants see them.
 
+use scenario::Scenario;
 use usar_sim::record::Status;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use crate::{scenario, trial};

@@ -7,9 +7,9 @@ mod rooms;
 mod shapes;
 mod timeline;
 
+use scenario::Scenario;
 use usar_sim::event::Event;
 use usar_sim::record::TrialRecord;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::world::World;
 

@@ -1,6 +1,6 @@
 //! Shapes that would silently become others are refused.
 
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 
 /// The problem with a piece of debris of this shape in an arena of this size.
 fn refused(shape: &str, arena: &str) -> String {

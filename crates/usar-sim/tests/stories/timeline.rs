@@ -1,8 +1,8 @@
 //! Stories of timelines: events happen, robots notice them, and a trial resumes from a snapshot bit for bit.
 
+use scenario::Scenario;
 use usar_sim::event::Event;
 use usar_sim::record::Status;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use crate::scenario;

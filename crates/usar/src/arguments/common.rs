@@ -6,8 +6,8 @@ use clap::builder::RangedU64ValueParser;
 use clap::{ArgMatches, ValueEnum};
 use experiments::experiment::{Experiment, PolicySpec, split_list, with_settings};
 use experiments::oracle::LIMITS;
+use scenario::Scenario;
 use tables::{Format, is_wide};
-use usar_sim::scenario::Scenario;
 
 use crate::bad_value::BadValue;
 use crate::input::tell_warnings;

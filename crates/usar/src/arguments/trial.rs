@@ -7,8 +7,8 @@ use experiments::run::TrialKey;
 use experiments::sweep::disk::experiment_in;
 use recording::{Options, Recording};
 use ron_tree::file::{read, read_start};
+use scenario::Scenario;
 use teaming::Session;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 use super::{CaseArgument, SetArguments, one_seed, parse_policy};

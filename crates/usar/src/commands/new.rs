@@ -3,7 +3,7 @@
 mod policy;
 
 use clap::Subcommand;
-use usar_sim::scenario::{Scenario, read_text};
+use scenario::{Scenario, read_text};
 
 use crate::library;
 use crate::output::{create_new, trouble};

@@ -6,10 +6,10 @@ mod snapshot;
 
 use experiments::experiment::PolicySpec;
 use reports::table::rounds_table;
+use scenario::{EmptyTasks, Moment, Scenario, Words};
 use teaming::{Deadline, Session};
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
-use usar_sim::scenario::{EmptyTasks, Moment, Scenario, Words};
 use usar_sim::simulation::Simulation;
 
 use self::event_lines::EventLines;

@@ -7,7 +7,7 @@ use rapier2d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier2d::geometry::{ColliderBuilder, InteractionGroups};
 use rapier2d::math::Vector;
 use rapier2d::pipeline::PhysicsWorld;
-use usar_sim::scenario::DebrisShape;
+use scenario::DebrisShape;
 use xtask::density::{DT_S, RADIUS_M, SPEED_MPS, aerial, boxes, side};
 
 /// A raw world of rapier.

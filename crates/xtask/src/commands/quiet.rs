@@ -7,7 +7,7 @@
 use std::process::ExitCode;
 
 use rayon::prelude::*;
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use xtask::quiet::{BothWays, both_ways};
 use xtask::{random, rooms, worlds};
 

@@ -6,9 +6,9 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
+use scenario::Scenario;
 use teaming::Deadline;
 use usar_sim::record::Status;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
 use xtask::density;

@@ -4,8 +4,8 @@
 
 use std::process::ExitCode;
 
+use scenario::Scenario;
 use teaming::{Asked, Session};
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use xtask::{density, team};
 

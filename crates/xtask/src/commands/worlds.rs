@@ -11,8 +11,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 use rayon::prelude::*;
+use scenario::{Scenario, ScenarioFile};
 use usar_sim::record::RobotRecord;
-use usar_sim::scenario::{Scenario, ScenarioFile};
 use xtask::journeys::{Journeys, JourneysError, STANDSTILL_S};
 use xtask::{rooms, worlds};
 

@@ -2,11 +2,9 @@
 //! measured where and how people in experiments were.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+use scenario::{DebrisFile, DebrisShape, Errand, LayoutError, Normal, RoleFile, Row, Scenario, ScenarioFile};
 use usar_sim::event::Event;
 use usar_sim::robot::{Robot, STANDING_MPS};
-use usar_sim::scenario::{
-    DebrisFile, DebrisShape, Errand, LayoutError, Normal, RoleFile, Row, Scenario, ScenarioFile,
-};
 use usar_sim::simulation::{Advance, Simulation};
 
 use super::literature::FREE_SPEED_MPS;

@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use experiments::Failure;
 use rayon::prelude::*;
-use usar_sim::scenario::{LayoutError, Scenario};
+use scenario::{LayoutError, Scenario};
 
 use crowd::{Crowd, Passage};
 use square::Outcome;

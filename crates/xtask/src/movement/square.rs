@@ -3,9 +3,9 @@
 //! github.com/mit-acl/gym-collision-avoidance, with the ranges of `gen_results_multi.py` there).
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+use scenario::{Body, Errand, LayoutError, Point, Row, Scenario};
 use serde::Serialize;
 use usar_sim::event::Event;
-use usar_sim::scenario::{Body, Errand, LayoutError, Point, Row, Scenario};
 use usar_sim::simulation::{Advance, Simulation};
 
 use super::crowd::{RELAXATION_S, keep_fresh, role};

@@ -4,8 +4,8 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use ron_tree::Node;
+use scenario::Point;
 use serde::Deserialize;
-use usar_sim::scenario::Point;
 
 use super::world::World;
 

@@ -4,10 +4,10 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use experiments::Failure;
+use scenario::{Row, Scenario, ScenarioFile};
 use usar_sim::event::Event;
 use usar_sim::invariant::RARE_OVERLAP_M;
 use usar_sim::record::Status;
-use usar_sim::scenario::{Row, Scenario, ScenarioFile};
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::stage::Stage;
 use usar_sim::world::World;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
+use scenario::Point;
 use serde::Serialize;
-use usar_sim::scenario::Point;
 
 /// Radius of every robot, in metres.
 pub const RADIUS_M: f64 = 0.25;

@@ -9,9 +9,9 @@ use experiments::explore::Parameter;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use ron_tree::Node;
+use scenario::Scenario;
 use serde::Serialize;
 use teaming::Registry;
-use usar_sim::scenario::Scenario;
 
 use super::log::{CALIBRATED, JOB, Log};
 use super::target::misfit;

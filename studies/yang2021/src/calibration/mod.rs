@@ -23,9 +23,9 @@ use experiments::run::{Fault, TrialSetup, run_trial};
 use experiments::{Failure, panic_message, refuse};
 use rayon::prelude::*;
 use ron_tree::{Node, Problem, edited};
+use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use teaming::Registry;
-use usar_sim::scenario::Scenario;
 
 pub use choice::{Candidate, Judged, NOT_TOLD_APART, judge};
 pub use fit::{Fit, write_fit};

@@ -6,10 +6,10 @@ use experiments::input_table::{CellProblem, InputRow, InputTable, Problem};
 use experiments::metric::{Catalogue, Metric};
 use experiments::sweep::trial_columns;
 use experiments::{Failure, refuse};
+use scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use statistics::Moments;
 use usar_sim::record::TrialRecord;
-use usar_sim::scenario::Scenario;
 
 use super::POLICY;
 

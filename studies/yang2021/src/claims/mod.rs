@@ -316,7 +316,7 @@ impl Part {
 
 #[cfg(test)]
 mod tests {
-    use usar_sim::scenario::Scenario;
+    use scenario::Scenario;
 
     use super::*;
 

@@ -9,7 +9,7 @@ use experiments::files::NewFile;
 use experiments::job::interrupted;
 use rayon::prelude::*;
 use ron_tree::{Node, edited};
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use yang2021::calibration::{
     Calibration, Evaluation, Fit, Log, POLICY, Spread, Target, best, open, the_policy, write_fit,
 };

@@ -4,8 +4,8 @@ use experiments::metric::task_names;
 use experiments::rounds::{self, GroupLevels, SortingAgreement, agreement, rounds_in};
 use experiments::sweep::folder::Folder;
 use reports::table::{levels_table, likeness_table};
+use scenario::Scenario;
 use teaming::{MadeMeasure, Member};
-use usar_sim::scenario::Scenario;
 use yang2021::blindness::{Blindness, Example};
 
 use usar::arguments::{CaseArgument, MeasureArgument, ShownArguments};

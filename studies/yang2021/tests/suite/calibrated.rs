@@ -1,6 +1,6 @@
 //! Calibration: its results, its interruptions, and its refusals.
 
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 
 use crate::support::{read, refuses as refused, succeeds, two_minutes as place, usar};
 

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use experiments::explore::Parameter;
 use ron_tree::Node;
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use yang2021::calibration::{Calibration, Spread, Target, open, the_policy};
 
 fn root() -> PathBuf {

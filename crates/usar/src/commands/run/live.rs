@@ -132,7 +132,7 @@ fn bar(share: f64, width: usize) -> String {
 #[cfg(test)]
 mod tests {
 
-    use usar_sim::scenario::Scenario;
+    use scenario::Scenario;
 
     use super::*;
 

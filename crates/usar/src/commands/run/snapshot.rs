@@ -3,8 +3,8 @@
 use experiments::experiment::PolicySpec;
 use experiments::limits::SNAPSHOT_BYTES;
 use ron_tree::file;
+use scenario::Scenario;
 use usar_sim::record::Status;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::snapshot::{Identity, START_BYTES, check_start};
 

@@ -1,6 +1,6 @@
 //! `usar scenario fmt`: sets the layout of scenario and sweep files.
 
-use usar_sim::scenario::{formatted, read_text};
+use scenario::{formatted, read_text};
 
 use crate::prelude::*;
 

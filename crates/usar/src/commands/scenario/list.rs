@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use experiments::metric::{Catalogue, Metric};
+use scenario::{RoleFile, RoleKind, Scenario};
 use serde::Serialize;
 use teaming::Kind;
-use usar_sim::scenario::{RoleFile, RoleKind, Scenario};
 
 use crate::arguments::JsonArgument;
 use crate::input::load;

@@ -1,7 +1,7 @@
 //! `usar scenario resolve`: prints every resolved value of a scenario, and its origin.
 
 use ron_tree::{Node, Value};
-use usar_sim::scenario::{parse_tree, read_text};
+use scenario::{parse_tree, read_text};
 
 use crate::arguments::SetArguments;
 use crate::library;

@@ -2,8 +2,8 @@
 
 use clap::ValueEnum;
 use experiments::experiment::sweep_schema;
+use scenario::scenario_schema;
 use teaming::{Decision, Question};
-use usar_sim::scenario::scenario_schema;
 
 use crate::prelude::*;
 

@@ -113,7 +113,7 @@ pub const NOT_MISTAKEN: &str = "must not be what readers of tables take for a nu
 /// Whether programs that read tables take this text for a number, for a truth value, or for a missing value.
 ///
 /// ```
-/// use usar_sim::scenario::is_mistaken;
+/// use scenario::is_mistaken;
 ///
 /// assert!(["NA", "None", "nan", "null", "1e5", "true"].into_iter().all(is_mistaken));
 /// assert!(!is_mistaken("north") && !is_mistaken("a1e5"));

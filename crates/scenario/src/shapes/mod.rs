@@ -1,11 +1,9 @@
 //! Shapes in the plane and their places.
 
-mod by_x;
 mod outline;
 mod places;
 mod zone;
 
-pub(crate) use by_x::{ByX, Spot};
 pub use outline::Outline;
 pub use places::{Found, Places};
 pub use zone::RadiationZone;

@@ -6,7 +6,7 @@ use serde::ser::SerializeStructVariant;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::file::{self, Door, Normal, Point, ResolverRule, WallFile};
-use crate::vitals;
+use crate::{Rates, WorkRates};
 
 /// Initial levels as they are written.
 #[derive(Deserialize)]
@@ -42,7 +42,7 @@ pub(super) struct Costs {
     unit: file::CostUnit,
     energy: PartOfRates,
     hp: PartOfRates,
-    work: vitals::WorkRates,
+    work: WorkRates,
 }
 
 #[derive(Default, Deserialize)]
@@ -55,7 +55,7 @@ struct PartOfRates {
 
 impl From<Costs> for file::Costs {
     fn from(written: Costs) -> Self {
-        let whole = |part: PartOfRates, default: vitals::Rates| vitals::Rates {
+        let whole = |part: PartOfRates, default: Rates| Rates {
             per_step: part.per_step.unwrap_or(default.per_step),
             per_metre: part.per_metre.unwrap_or(default.per_metre),
             per_second: part.per_second.unwrap_or(default.per_second),
@@ -139,7 +139,7 @@ mod tests {
     use ron_tree::Node;
 
     use super::*;
-    use crate::scenario::RightOfWay;
+    use crate::RightOfWay;
 
     fn value<T: for<'de> Deserialize<'de>>(text: &str) -> Result<T, String> {
         Node::parse(text).unwrap().read_as().map_err(|problem| problem.to_string())
@@ -150,7 +150,7 @@ mod tests {
         let costs: file::Costs = value("(hp: (per_second: 2.0))").unwrap();
         let default = file::Costs::default();
         assert_eq!(costs.energy, default.energy);
-        assert_eq!(costs.hp, vitals::Rates { per_second: 2.0, ..default.hp });
+        assert_eq!(costs.hp, Rates { per_second: 2.0, ..default.hp });
         let levels: file::InitialLevels = value("(hp: (mean: 50), energy: (sd: 0))").unwrap();
         assert_eq!(levels.hp, Normal { mean: 50.0, sd: 10.0 });
         assert_eq!(levels.energy, Normal { mean: 80.0, sd: 0.0 });

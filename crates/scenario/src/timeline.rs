@@ -111,7 +111,7 @@ pub enum Happening {
 
 impl Happening {
     /// The piece of debris that falls in this event, if one falls.
-    pub(crate) fn falling(&self) -> Option<DebrisFile> {
+    pub fn falling(&self) -> Option<DebrisFile> {
         let Self::DebrisFalls { shape, at, rotation_deg, name } = self else { return None };
         let (shape, name) = (shape.clone(), name.clone());
         Some(DebrisFile { shape, at: *at, rotation_deg: *rotation_deg, movable: None, name })
@@ -141,7 +141,7 @@ impl ScenarioFile {
     }
 
     /// Whether a task begins with an event of the timeline.
-    pub(crate) fn begins_later(&self, task: &TaskFile) -> bool {
+    pub fn begins_later(&self, task: &TaskFile) -> bool {
         let first = self.moments().into_iter().find_map(|(_, moment)| match &moment.event {
             Happening::TaskBegins(name) if *name == task.name => Some(true),
             Happening::TaskEnds(name) if *name == task.name => Some(false),

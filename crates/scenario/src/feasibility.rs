@@ -5,8 +5,8 @@ use parry2d::query::distance;
 
 use super::checker::{Checker, entry};
 use super::file::{DebrisFile, DebrisShape, Point, RoleFile, RoleKind, ScenarioFile, TaskFile};
-use crate::geometry::Outline;
 use crate::limits;
+use crate::shapes::Outline;
 
 /// Checks these rules. Places and shapes must be sound.
 pub(super) fn feasibility(check: &mut Checker, file: &ScenarioFile) {

@@ -121,7 +121,7 @@ mod tests {
     }
 
     fn scenario(over: &str) -> Result<Scenario, String> {
-        let paper = include_str!("../../../../scenarios/paper.ron");
+        let paper = include_str!("../../../scenarios/paper.ron");
         let second = "(base: \"over.ron\", name: \"second\")";
         let folder = folder(&[("paper.ron", paper), ("over.ron", over), ("second.ron", second)]);
         let result = Scenario::load(&folder.join("over.ron")).map(|(scenario, _)| scenario);
@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn what_is_said_changes_and_the_rest_is_the_bases() {
         let base =
-            Scenario::parse(include_str!("../../../../scenarios/paper.ron"), "paper.ron".as_ref()).unwrap();
+            Scenario::parse(include_str!("../../../scenarios/paper.ron"), "paper.ron".as_ref()).unwrap();
         let over = scenario(
             "(base: \"paper.ron\", name: \"over\", mission: (rest_s: 10.0), roles: (carrier: (speed_mps: \
              3.0)),\n radiation: [],
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn names_of_the_base_are_known_and_may_have_other_values() {
-        let base = include_str!("../../../../scenarios/paper.ron").replacen(
+        let base = include_str!("../../../scenarios/paper.ron").replacen(
             "\n(",
             "\n(values: (rest: 20, near: 3),",
             1,
@@ -176,10 +176,7 @@ mod tests {
         file.name = "over".to_owned();
         assert_eq!(*scenario, file);
         file.set("mission.rest_s", "20").unwrap();
-        assert_eq!(
-            base.mission,
-            crate::scenario::MissionRules { loading_s: base.mission.loading_s, ..file.mission }
-        );
+        assert_eq!(base.mission, crate::MissionRules { loading_s: base.mission.loading_s, ..file.mission });
         let error = Scenario::load(&folder.join("wrong.ron")).unwrap_err().to_string();
         assert!(
             error.contains("mission.loading_s must be a number, found neer; did you mean near?"),

@@ -33,7 +33,7 @@ mod tests {
     use ron_tree::Node;
 
     use super::*;
-    use crate::scenario::{Amount, DebrisShape};
+    use crate::{Amount, DebrisShape};
 
     fn file() -> ScenarioFile {
         let row = "(role: \"robot\", count: 2, center: (5, 5), width_m: 2)";
@@ -57,7 +57,7 @@ mod tests {
         expected.roles[0].speed_mps = 3.0;
         expected.debris[0].shape = DebrisShape::Box(3.0, 1.0);
         expected.team[0].levels =
-            Some(crate::scenario::Levels { energy: Amount::Fixed(50.0), hp: Amount::Fixed(60.0) });
+            Some(crate::Levels { energy: Amount::Fixed(50.0), hp: Amount::Fixed(60.0) });
         expected.arena_m[1] = 30.0;
         assert_eq!(set, expected);
     }

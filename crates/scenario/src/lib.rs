@@ -13,15 +13,19 @@ mod error;
 mod feasibility;
 mod file;
 mod homes;
+pub mod limits;
 mod named;
 mod partial;
 mod places;
 mod ranges;
+mod rates;
 mod reading;
 mod rules;
 mod scatter;
 mod schema;
+pub mod seed;
 mod set;
+pub mod shapes;
 mod steps;
 mod telemetry;
 mod timeline;
@@ -40,9 +44,10 @@ use teaming::{RoleId, TaskId};
 pub use carried::{CARRIED, beside, carry, is_file};
 pub use checker::{NOT_MISTAKEN, is_mistaken};
 pub use debris::LEAST_POLYGON_WIDTH_M;
-pub(crate) use deceit::rounded_share;
+pub use deceit::rounded_share;
 pub use error::{LayoutError, Location, Problem, Problems, ScenarioError};
 pub use file::*;
+pub use rates::{Rates, WorkRates};
 pub use reading::{ReadText, formatted, parse_ron, parse_tree, read_text};
 pub use schema::scenario_schema;
 pub use words::Words;
@@ -51,7 +56,7 @@ pub use words::Words;
 pub const FORMAT: u32 = 2;
 
 /// Most radii for which ground routes are planned separately. Each radius costs a map of the known obstacles.
-pub(crate) const MAX_RADIUS_CLASSES: usize = 4;
+pub const MAX_RADIUS_CLASSES: usize = 4;
 
 /// A scenario of which every value was checked. It dereferences to the [`ScenarioFile`] from which it was
 /// made.
@@ -200,7 +205,7 @@ impl Scenario {
     /// Radii for which ground routes are planned, in ascending order, in metres: those of the team's ground
     /// robots. If there are more than [`MAX_RADIUS_CLASSES`], robots use the routes of the next larger radius
     /// that is kept. There is at least one radius; it is 0 if the team has no ground robot.
-    pub(crate) fn ground_radii_m(&self) -> Vec<f64> {
+    pub fn ground_radii_m(&self) -> Vec<f64> {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));
         let ground = roles.filter(|role| role.kind == RoleKind::Ground);
         let mut radii: Vec<f64> = ground.map(|role| role.radius_m).collect();
@@ -214,7 +219,7 @@ impl Scenario {
     }
 
     /// Radius of the largest robot of this kind in the team, in metres; 0 if there is none.
-    pub(crate) fn largest_radius_m(&self, kind: RoleKind) -> f64 {
+    pub fn largest_radius_m(&self, kind: RoleKind) -> f64 {
         let roles = self.team.iter().filter_map(|row| self.body_of(row));
         roles.filter(|role| role.kind == kind).map(|role| role.radius_m).fold(0.0, f64::max)
     }
@@ -226,7 +231,7 @@ mod tests {
 
     #[test]
     fn a_scenario_that_results_could_not_hold_is_refused() {
-        let text = include_str!("../../../../scenarios/minimal/stranded.ron");
+        let text = include_str!("../../../scenarios/minimal/stranded.ron");
         let mut scenario = Scenario::parse(text, "stranded.ron".as_ref()).unwrap();
         let long = " ".repeat(1 << 20);
         assert!(scenario.check_can_be_read_again(&long, "a.ron".as_ref()).is_ok());

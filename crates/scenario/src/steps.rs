@@ -22,7 +22,7 @@ pub enum Fidelity {
 
 impl Scenario {
     /// Steps from one control step to the next: at least one.
-    pub(crate) fn control_steps(&self) -> u64 {
+    pub fn control_steps(&self) -> u64 {
         let fastest = self.bodies().map(|(body, _)| body.speed_mps).fold(0.0, f64::max);
         let period_s = self.control_period_s.min(CONTROL_WAY_M / fastest);
         ((period_s / self.dt_s + 1e-9) as u64).max(1)
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     fn paper() -> Scenario {
-        let text = include_str!("../../../../scenarios/paper.ron");
+        let text = include_str!("../../../scenarios/paper.ron");
         Scenario::parse(text, "paper.ron".as_ref()).unwrap()
     }
 

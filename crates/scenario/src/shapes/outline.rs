@@ -25,7 +25,7 @@ impl Outline {
     }
 
     /// Distance from a point to the outline, in metres; negative inside.
-    pub(crate) fn signed_distance(&self, point: Vector) -> f32 {
+    pub fn signed_distance(&self, point: Vector) -> f32 {
         self.shape.distance_to_point(&self.pose, point, false)
     }
 
@@ -49,6 +49,12 @@ impl Outline {
             })
             .collect();
         convex_hull(&points)
+    }
+}
+
+impl std::fmt::Debug for Outline {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "outline at {:?}", self.pose.translation)
     }
 }
 

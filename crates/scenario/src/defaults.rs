@@ -10,7 +10,7 @@ use super::file::{
     MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile,
     RoleKind, RoundEnd, TurnBack,
 };
-use crate::vitals::{Rates, WorkRates};
+use crate::{Rates, WorkRates};
 
 /// The format of a file that names none: the one that this program reads.
 pub(super) fn format() -> u32 {

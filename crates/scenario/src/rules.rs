@@ -8,7 +8,7 @@ use teaming::GroupSizes;
 use super::checker::Checker;
 use super::file::ScenarioFile;
 use crate::limits;
-use crate::vitals::{Rates, WorkRates};
+use crate::{Rates, WorkRates};
 
 /// What moving, radiation and work cost.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,7 +38,7 @@ pub enum CostUnit {
 
 impl CostUnit {
     /// Converts a cost to percent of the maximum of the robot that bears it.
-    pub(crate) fn to_percent(self, cost: f64, maximum: f64) -> f64 {
+    pub fn to_percent(self, cost: f64, maximum: f64) -> f64 {
         match self {
             Self::Percent => cost,
             Self::Points => cost * 100.0 / maximum,
@@ -46,7 +46,7 @@ impl CostUnit {
     }
 
     /// Converts a share of a robot's maximum, in percent, to a cost.
-    pub(crate) fn of_percent(self, percent: f64, maximum: f64) -> f64 {
+    pub fn of_percent(self, percent: f64, maximum: f64) -> f64 {
         match self {
             Self::Percent => percent,
             Self::Points => percent * maximum / 100.0,

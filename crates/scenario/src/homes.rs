@@ -5,7 +5,7 @@ use parry2d::math::Vector;
 
 use super::checker::Checker;
 use super::file::{DebrisFile, Point, RoleFile, RoleKind, ScenarioFile};
-use crate::geometry::{Places, vector};
+use crate::shapes::{Places, vector};
 
 /// A robot's home.
 struct Home<'f> {

@@ -8,7 +8,7 @@ use super::file::{
     ConflictRules, DebrisFile, DebrisShape, Door, ResolverRule, RightOfWay, RoleFile, Row, ScenarioFile,
     WallFile, ZoneFile,
 };
-use crate::geometry::{Outline, RadiationZone, vector};
+use crate::shapes::{Outline, RadiationZone, vector};
 
 impl DebrisFile {
     /// The outline of a piece of debris as the scenario places it. The shape must have been validated.
@@ -31,7 +31,7 @@ impl DebrisFile {
 
 impl WallFile {
     /// Length of its middle line, in metres.
-    pub(crate) fn length_m(&self) -> f64 {
+    pub fn length_m(&self) -> f64 {
         libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1])
     }
 
@@ -106,7 +106,7 @@ impl ScenarioFile {
 
 impl ConflictRules {
     /// The values of the paper's rule; the defaults under another resolver.
-    pub(crate) fn right_of_way(&self) -> RightOfWay {
+    pub fn right_of_way(&self) -> RightOfWay {
         match self.resolver {
             ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) => rule,
             ResolverRule::Reciprocal | ResolverRule::None => RightOfWay::default(),
@@ -139,7 +139,7 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::DebrisShape;
+    use crate::DebrisShape;
 
     fn piece(shape: DebrisShape) -> Outline {
         DebrisFile { shape, at: [10.0, 5.0], rotation_deg: 30.0, movable: None, name: None }.outline()
@@ -147,7 +147,7 @@ mod tests {
 
     #[test]
     fn the_parts_of_a_wall_leave_its_doors_free() {
-        let door = |at_m| crate::scenario::Door { at_m, width_m: 1.0, name: None, is_closed: false };
+        let door = |at_m| crate::Door { at_m, width_m: 1.0, name: None, is_closed: false };
         let doors = vec![door(7.0), door(3.0), door(9.55)];
         let wall = WallFile { from: [2.0, 0.0], to: [2.0, 10.0], thickness_m: 0.2, doors };
         let pieces: Vec<(f64, f64)> = wall

@@ -7,8 +7,8 @@ use parry2d::math::Vector;
 
 use super::checker::{Checker, entry};
 use super::file::{DebrisFile, Happening, Point, RoleFile, RoleKind, SampledCounts, ScenarioFile, TaskFile};
-use crate::geometry::{Places, vector};
 use crate::limits;
+use crate::shapes::{Places, vector};
 
 /// Checks the values of errands.
 pub(super) fn errands(check: &mut Checker, file: &ScenarioFile) {

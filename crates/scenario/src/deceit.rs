@@ -168,12 +168,12 @@ enum Subject {
 
 impl Lie {
     /// Whether it is about a level of the liar.
-    pub(crate) fn is_about_levels(&self) -> bool {
+    pub fn is_about_levels(&self) -> bool {
         self.subject().is_none()
     }
 
     /// Whether it is about what the liar saw of its mates.
-    pub(crate) fn is_about_mates(&self) -> bool {
+    pub fn is_about_mates(&self) -> bool {
         self.subject() == Some(Subject::Mates)
     }
 
@@ -307,7 +307,7 @@ fn who(check: &mut Checker, field: &str, who: &Who, file: &ScenarioFile) {
 }
 
 /// A share of the robots, rounded half up.
-pub(crate) fn rounded_share(share: f64, robots: u32) -> u32 {
+pub fn rounded_share(share: f64, robots: u32) -> u32 {
     (share * f64::from(robots) + 0.5).floor() as u32
 }
 
