@@ -6,7 +6,7 @@ use ron_tree::limits::Limit;
 use ron_tree::nearest;
 
 use super::error::Problem;
-use super::file::Point;
+use super::file::{Amount, Point};
 use crate::limits;
 
 /// Most problems that are reported at once. A reader mends the first of them first.
@@ -57,9 +57,17 @@ impl Checker {
         }
     }
 
-    pub(super) fn count(&mut self, field: impl Into<String>, value: u32, limit: Limit) {
-        if !limit.allows(value as usize) {
-            self.fail(field, format!("must be a count from {} to {}", limit.least, limit.most), value);
+    /// Checks that a number in its range is at least another one.
+    pub(super) fn at_least(&mut self, field: &str, value: f64, least: f64, limit: Limit) {
+        if limit.range().contains(&value) && limit.range().contains(&least) {
+            self.number(field, value, Limit { least, ..limit });
+        }
+    }
+
+    /// Checks the ends of a distribution. A plain number is in its range already.
+    pub(super) fn amount(&mut self, field: &str, amount: &Amount, limit: Limit) {
+        if matches!(amount, Amount::Drawn(_)) {
+            amount.support().into_iter().for_each(|end| self.number(field, end, limit));
         }
     }
 

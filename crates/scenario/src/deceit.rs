@@ -7,7 +7,6 @@ use super::Scenario;
 use super::checker::{Checker, meant, shown};
 use super::file::{Happening, ScenarioFile};
 use super::rules::BeliefSharing;
-use crate::limits;
 
 /// A lie and who tells it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -212,18 +211,12 @@ impl Lie {
 
 /// Checks who lies, and how.
 pub(super) fn deceit(check: &mut Checker, file: &ScenarioFile) {
-    check.entries("deceit", file.deceit.len(), limits::DECEITS);
     for (i, deceit) in file.deceit.iter().enumerate() {
         let field = format!("deceit[{i}]");
         who(check, &format!("{field}.who"), &deceit.who, file);
         told(check, &field, &deceit.lie, &deceit.on, file);
-        check.number(format!("{field}.since_s"), deceit.since_s, limits::AT_S);
-        check.number(format!("{field}.floor"), deceit.floor, limits::SAID_LEVEL);
-        if let Some(until) = deceit.until_s {
-            check.number(format!("{field}.until_s"), until, limits::AT_S);
-            if until < deceit.since_s {
-                check.fail(format!("{field}.until_s"), "must not be before since_s", until);
-            }
+        if let Some(until) = deceit.until_s.filter(|until| *until < deceit.since_s) {
+            check.fail(format!("{field}.until_s"), "must not be before since_s", until);
         }
         if let (Lie::Impersonate { name }, Who::Robots(ids)) = (&deceit.lie, &deceit.who)
             && ids.contains(name)
@@ -298,7 +291,6 @@ fn who(check: &mut Checker, field: &str, who: &Who, file: &ScenarioFile) {
             }
         }
         Who::Share(share) => {
-            check.number(field, *share, limits::PROBABILITY);
             if *share > 0.0 && rounded_share(*share, robots) == 0 {
                 check.fail(field, format!("must be 0 or make one of {robots} robots, or more"), share);
             }
@@ -314,21 +306,12 @@ pub fn rounded_share(share: f64, robots: u32) -> u32 {
 fn values(check: &mut Checker, field: &str, lie: &Lie, file: &ScenarioFile) {
     let robots: u32 = file.team.iter().map(|row| row.count).sum();
     match lie {
-        Lie::Exaggerate { by } | Lie::Understate { by } => {
-            check.number(format!("{field}.by"), *by, limits::PROBABILITY);
-        }
-        Lie::Offset { points } => check.number(format!("{field}.points"), *points, limits::GAUGE_BIAS),
-        Lie::Scale { factor } => check.number(format!("{field}.factor"), *factor, limits::LIE_FACTOR),
         Lie::Uniform { low, high } => {
-            check.number(format!("{field}.low"), *low, limits::SAID_LEVEL);
-            check.number(format!("{field}.high"), *high, limits::SAID_LEVEL);
             if low > high {
                 check.fail(format!("{field}.high"), "must not be below low", high);
             }
         }
-        Lie::OnOff { period_s, duty, lie } => {
-            check.number(format!("{field}.period_s"), *period_s, limits::LIE_PERIOD_S);
-            check.number(format!("{field}.duty"), *duty, limits::PROBABILITY);
+        Lie::OnOff { lie, .. } => {
             if !lie.is_about_levels() || matches!(**lie, Lie::OnOff { .. }) {
                 check.fail(format!("{field}.lie"), "must be a lie about a level, and not OnOff", "another");
             } else {
@@ -344,9 +327,6 @@ fn values(check: &mut Checker, field: &str, lie: &Lie, file: &ScenarioFile) {
                 );
             }
         }
-        Lie::PhantomRescuee { every_s } => {
-            check.number(format!("{field}.every_s"), *every_s, limits::LIE_PERIOD_S);
-        }
         Lie::Impersonate { name } => {
             if *name >= robots {
                 check.fail(
@@ -356,7 +336,12 @@ fn values(check: &mut Checker, field: &str, lie: &Lie, file: &ScenarioFile) {
                 );
             }
         }
-        Lie::Stuck
+        Lie::Exaggerate { .. }
+        | Lie::Understate { .. }
+        | Lie::Offset { .. }
+        | Lie::Scale { .. }
+        | Lie::PhantomRescuee { .. }
+        | Lie::Stuck
         | Lie::Complement
         | Lie::Copycat
         | Lie::BadMouth { .. }

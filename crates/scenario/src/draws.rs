@@ -167,7 +167,7 @@ impl Taken {
 
 impl ScenarioFile {
     /// The tree of the file without its distributions: each is replaced by one of its values.
-    fn plain_tree(&self) -> Node {
+    pub(super) fn plain_tree(&self) -> Node {
         // Types of a scenario refuse nothing when they are written.
         Node::of(self).unwrap_or_else(|_| Node::word("()"))
     }

@@ -21,11 +21,6 @@ pub(super) fn errands(check: &mut Checker, file: &ScenarioFile) {
         } else if !seen.insert(errand.robot) {
             check.fail(format!("errands[{i}].robot"), "must not stand twice", errand.robot);
         }
-        if errand.to.is_empty() {
-            check.fail(format!("errands[{i}].to"), "must name at least one place", "none");
-        } else {
-            check.entries(format!("errands[{i}].to"), errand.to.len(), limits::PLACES);
-        }
         for (k, place) in errand.to.iter().enumerate() {
             check.inside(format!("errands[{i}].to[{k}]"), *place, 0.0);
         }

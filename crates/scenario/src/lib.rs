@@ -23,6 +23,7 @@ mod reading;
 mod rules;
 mod scatter;
 mod schema;
+mod schema_ranges;
 pub mod seed;
 mod set;
 pub mod shapes;
@@ -168,6 +169,7 @@ impl Scenario {
         for problem in list.iter_mut().filter(|problem| problem.line.is_none()) {
             problem.line = root.line(&problem.field);
         }
+        list.sort_by_key(|problem| problem.line);
         checked.ok().filter(|_| list.is_empty()).ok_or(list)
     }
 

@@ -142,12 +142,12 @@ ron_tree::limits! {
     /// Time of an event, in seconds.
     AT_S: "timeline[*].at_s" = 0, DURATION_S.most;
     /// What a robot loses of a level, in percent points.
-    LOSS: "timeline[*].event.*" = 0, 100;
+    LOSS: "timeline[*].event.RobotLoses.energy" = 0, 100;
 
     /// Share of its speed that a robot keeps.
-    SLOWED: "timeline[*].event.factor" = 0.01, 1;
+    SLOWED: "timeline[*].event.RobotSlows.factor" = 0.01, 1;
     /// Factor on the energy that a robot spends.
-    FADED: "timeline[*].event.factor" = 0.01, 100;
+    FADED: "timeline[*].event.BatteryFades.factor" = 0.01, 100;
 
     /// Time between two reports, in seconds.
     REPORT_S: "reports.every_s" = 1, 3_600;

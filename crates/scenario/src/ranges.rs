@@ -1,152 +1,177 @@
-//! Ranges of numbers, lengths of lists and patterns of names in the JSON Schema of scenario files: the paths
-//! of [`limits`] lead to the places of the schema.
+//! Ranges of numbers and lengths of lists: the paths of [`limits`] lead to the places of a file.
 
 use ron_tree::limits::Limit;
-use serde_json::{Map, Value, json};
+use ron_tree::{Node, Value};
 
+use super::checker::Checker;
+use super::distribution::WORDS;
 use crate::limits;
 
-/// Limits that apply at further paths. Variants have no part in a path.
-const MORE: [(&str, Limit); 10] = [
+/// Limits that apply at further paths. In a path of the schema and of a file, the name of a variant may be left
+/// out.
+const MORE: [(&str, Limit); 24] = [
     ("team[*].count", Limit { least: 0.0, ..limits::ROBOTS }),
-    ("timeline[*].event.energy", limits::LOSS),
-    ("timeline[*].event.hp", limits::LOSS),
-    ("timeline[*].event.grid[*]", limits::GRID),
-    ("timeline[*].event.radius_m", limits::ZONE_RADIUS_M),
-    ("timeline[*].event.rotation_deg", limits::ROTATION_DEG),
+    ("timeline[*].event.RobotLoses.hp", limits::LOSS),
+    ("timeline[*].event.RescueesAppear.grid[*]", limits::GRID),
+    ("timeline[*].event.SourceAppears.radius_m", limits::ZONE_RADIUS_M),
     ("scatter[*].radius_m", limits::SAMPLED_RADIUS_M),
     ("scatter[*].place.Poisson", limits::GAP_M),
     ("tasks.*.requires", Limit { least: 0.0, ..limits::NEEDS }),
     ("tasks.*.quota", Limit { least: 0.0, ..limits::ROLES }),
+    ("tasks.*.after", Limit { least: 0.0, ..limits::TASKS }),
+    ("medium.loss.GilbertElliott.*", limits::PROBABILITY),
+    ("medium.blackouts[*].from_s", limits::AT_S),
+    ("medium.blackouts[*].to_s", limits::AT_S),
+    ("deceit[*].since_s", limits::AT_S),
+    ("deceit[*].until_s", limits::AT_S),
+    ("deceit[*].who.Share", limits::PROBABILITY),
+    ("deceit[*].lie.Exaggerate.by", limits::PROBABILITY),
+    ("deceit[*].lie.Understate.by", limits::PROBABILITY),
+    ("deceit[*].lie.Offset.points", limits::GAUGE_BIAS),
+    ("deceit[*].lie.Uniform.low", limits::SAID_LEVEL),
+    ("deceit[*].lie.Uniform.high", limits::SAID_LEVEL),
+    ("deceit[*].lie.OnOff.duty", limits::PROBABILITY),
+    ("deceit[*].lie.PhantomRescuee.every_s", limits::LIE_PERIOD_S),
+    ("scatter[*].movable.mass_kg", limits::PIECE_MASS_KG),
+    ("scatter[*].movable.friction", limits::FRICTION),
 ];
 
-/// Patterns of names.
-const PATTERNS: [(&str, &str); 9] = [
-    ("name", "^[A-Za-z0-9_]([A-Za-z0-9._-]{0,62}[A-Za-z0-9_-])?$"),
-    ("words.*", "^[a-z][a-z0-9]{0,23}$"),
-    ("roles.*.name", PLAIN),
-    ("needs.*.name", PLAIN),
-    ("tasks.*.name", PLAIN),
-    ("debris[*].name", LINE),
-    ("walls[*].doors[*].name", LINE),
-    ("radiation[*].name", LINE),
-    ("timeline[*].event.name", LINE),
+/// Parts of a file that have the fields of another one.
+const ALIKE: [(&str, &str); 4] = [
+    ("roles.*.", "team[*].body."),
+    ("debris[*].", "timeline[*].event.DebrisFalls."),
+    ("deceit[*].lie.", "deceit[*].lie.OnOff.lie."),
+    ("deceit[*].lie.", "timeline[*].event.RobotLies.lie."),
 ];
 
-const PLAIN: &str = "^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$";
-const LINE: &str = "^[^\\r\\n]{1,64}$";
-
-/// Puts all ranges and patterns into a schema.
-pub(super) fn put(schema: &mut Value) {
-    for limit in limits::ALL {
-        // Errands take the place of tasks, and rescuees are counted in all tasks together.
-        let least = if *limit == limits::TASKS { 0.0 } else { limit.least };
-        put_limit(schema, limit.of, Limit { least, ..*limit });
-        if let Some(field) = limit.of.strip_prefix("roles.*.") {
-            put_limit(schema, &format!("team[*].body.{field}"), *limit);
+/// All paths with their limits.
+pub(super) fn all() -> Vec<(String, Limit)> {
+    // Errands take the place of tasks, and rescuees are counted in all tasks together.
+    let least = |limit: &Limit| if *limit == limits::TASKS { 0.0 } else { limit.least };
+    let declared = limits::ALL.iter().map(|limit| (limit.of, Limit { least: least(limit), ..*limit }));
+    let mut all: Vec<(String, Limit)> =
+        declared.chain(MORE).map(|(path, limit)| (path.replace("[*]", ".[]"), limit)).collect();
+    for (from, to) in ALIKE.map(|(from, to)| (from.replace("[*]", ".[]"), to.replace("[*]", ".[]"))) {
+        for i in 0..all.len() {
+            if let Some(rest) = all[i].0.strip_prefix(&from) {
+                all.push((format!("{to}{rest}"), all[i].1));
+            }
         }
-    }
-    MORE.into_iter().for_each(|(path, limit)| put_limit(schema, path, limit));
-    let format = f64::from(super::FORMAT);
-    put_limit(schema, "format", Limit { least: format, most: format, ..limits::ROBOTS });
-    for (path, pattern) in PATTERNS {
-        for place in places(schema, path) {
-            put_at(schema, &place, "pattern", json!(pattern));
-        }
-    }
-}
-
-fn put_at(schema: &mut Value, place: &str, key: &str, value: Value) {
-    if let Some(own) = schema.pointer_mut(place).and_then(Value::as_object_mut) {
-        own.insert(key.to_owned(), value);
-    }
-}
-
-/// Puts a limit at the places of a path. Of two limits of a length, the narrower one counts.
-fn put_limit(schema: &mut Value, path: &str, limit: Limit) {
-    for place in places(schema, path) {
-        let own = schema.pointer(&place).and_then(Value::as_object);
-        let Some((least_key, most_key)) = own.and_then(keys) else { continue };
-        let is_length = least_key != "minimum";
-        let there = |key: &str| own?.get(key)?.as_f64().filter(|_| is_length);
-        let least = there(least_key).map_or(limit.least, |there| there.max(limit.least));
-        let most = there(most_key).map_or(limit.most, |there| there.min(limit.most));
-        if !is_length || least > 0.0 {
-            put_at(schema, &place, least_key, number(least));
-        }
-        put_at(schema, &place, most_key, number(most));
-    }
-}
-
-/// The keywords for the least and the greatest value of a schema of this type.
-fn keys(schema: &Map<String, Value>) -> Option<(&'static str, &'static str)> {
-    let is_tuple = schema.contains_key("prefixItems");
-    let kind = match schema.get("type")? {
-        Value::Array(kinds) => kinds.first()?.as_str()?,
-        kind => kind.as_str()?,
-    };
-    match kind {
-        "number" | "integer" => Some(("minimum", "maximum")),
-        "array" if !is_tuple => Some(("minItems", "maxItems")),
-        "object" if !schema.contains_key("properties") => Some(("minProperties", "maxProperties")),
-        _ => None,
-    }
-}
-
-/// Whole numbers are written without a point.
-fn number(value: f64) -> Value {
-    if value.fract() == 0.0 { json!(value as i64) } else { json!(value) }
-}
-
-/// The places of a path in a schema, as JSON pointers.
-fn places(schema: &Value, path: &str) -> Vec<String> {
-    let path = path.replace("[*]", ".[]");
-    let mut places = vec![String::new()];
-    for part in path.split('.') {
-        places = places.iter().flat_map(|place| step(schema, place, part)).collect();
-    }
-    places.iter().flat_map(|place| opened(schema, place)).collect()
-}
-
-/// The schemas that a place stands for: those of its reference and of its alternatives, and itself.
-fn opened(schema: &Value, place: &str) -> Vec<String> {
-    let Some(own) = schema.pointer(place).and_then(Value::as_object) else { return Vec::new() };
-    let mut all = vec![place.to_owned()];
-    let reference = own.get("$ref").and_then(Value::as_str).and_then(|to| to.strip_prefix('#'));
-    all.extend(reference.into_iter().flat_map(|to| opened(schema, to)));
-    for key in ["anyOf", "oneOf", "allOf"] {
-        let count = own.get(key).and_then(Value::as_array).map_or(0, Vec::len);
-        all.extend((0..count).flat_map(|i| opened(schema, &format!("{place}/{key}/{i}"))));
     }
     all
 }
 
-/// The places of a part of a path below a place: a field, `*` for all fields or entries, `[]` for entries.
-fn step(schema: &Value, place: &str, part: &str) -> Vec<String> {
-    let mut found = Vec::new();
-    for place in opened(schema, place) {
-        let Some(own) = schema.pointer(&place).and_then(Value::as_object) else { continue };
-        if part == "*" || part == "[]" {
-            let inner = ["items", "additionalProperties"].into_iter();
-            let inner = inner.filter(|key| own.get(*key).is_some_and(Value::is_object));
-            found.extend(inner.map(|key| format!("{place}/{key}")));
-            let count = own.get("prefixItems").and_then(Value::as_array).map_or(0, Vec::len);
-            found.extend((0..count).map(|i| format!("{place}/prefixItems/{i}")));
+/// Checks every number of a file that has a range, and the length of every list that has one. Returns whether
+/// the lengths are sound.
+pub(super) fn in_range(check: &mut Checker, file: &Node) -> bool {
+    let all = all();
+    let rules: Vec<Rule> = all.iter().map(|(path, limit)| (path.as_str(), *limit)).collect();
+    let mut walk = Walk { check, path: String::new(), is_sound: true };
+    walk.node(file, &rules);
+    walk.is_sound
+}
+
+/// The rest of a path, and what may be there.
+type Rule<'r> = (&'r str, Limit);
+
+/// The rules one step further down: those whose next part is `part`.
+fn below<'r>(rules: &[Rule<'r>], part: impl Fn(&str) -> bool) -> Vec<Rule<'r>> {
+    let step = |(path, limit): &Rule<'r>| {
+        let (head, tail) = path.split_once('.').unwrap_or((path, ""));
+        (!head.is_empty() && part(head)).then_some((tail, *limit))
+    };
+    rules.iter().filter_map(step).collect()
+}
+
+/// A walk over a file, with the path up to where it is.
+struct Walk<'c> {
+    check: &'c mut Checker,
+    path: String,
+    is_sound: bool,
+}
+
+impl Walk<'_> {
+    fn node(&mut self, node: &Node, rules: &[Rule]) {
+        if rules.is_empty() {
+            return;
         }
-        for name in own.get("properties").and_then(Value::as_object).into_iter().flat_map(Map::keys) {
-            let inner = format!("{place}/properties/{name}");
-            if matches(part, name) {
-                found.push(inner);
-            } else if name.starts_with(|c: char| c.is_ascii_uppercase()) {
-                found.extend(step(schema, &inner, part)); // into a variant
+        let here = rules.iter().filter(|(path, _)| path.is_empty()).map(|(_, limit)| *limit);
+        let here = here.reduce(|a, b| Limit { least: a.least.max(b.least), most: a.most.min(b.most), ..a });
+        match (&node.value, here) {
+            (Value::Word(word), Some(limit)) => {
+                if let Ok(number) = word.parse() {
+                    self.check.number(&self.path, number, limit);
+                }
+            }
+            (Value::List(entries), Some(limit)) => self.length(entries.len(), limit),
+            (Value::Map(entries), Some(limit)) => self.length(entries.len(), limit),
+            (_, _) => {}
+        }
+        self.inner(node, rules);
+    }
+
+    fn length(&mut self, length: usize, limit: Limit) {
+        self.is_sound &= limit.allows(length);
+        self.check.entries(&self.path, length, limit);
+    }
+
+    fn inner(&mut self, node: &Node, rules: &[Rule]) {
+        match &node.value {
+            Value::Word(_) | Value::Text(_) => {}
+            Value::Tuple(name, entries) if !name.is_empty() => {
+                let rules = of_variant(rules, name);
+                match &entries[..] {
+                    _ if WORDS.contains(&&**name) => {} // a distribution
+                    [one] => self.node(one, &rules),
+                    more => {
+                        let rules = below(&rules, |part| part == "[]");
+                        more.iter().for_each(|entry| self.node(entry, &rules));
+                    }
+                }
+            }
+            Value::List(entries) | Value::Tuple(_, entries) => {
+                let rules = below(rules, |part| part == "[]" || part == "*");
+                let is_named = ["roles", "needs", "tasks"].contains(&self.path.as_str());
+                for (i, entry) in entries.iter().enumerate() {
+                    let name = entry.get("name").and_then(Node::as_text).filter(|_| is_named);
+                    let segment = name.map_or_else(|| format!("[{i}]"), |name| format!(".{name}"));
+                    self.step(&segment, entry, &rules);
+                }
+            }
+            Value::Map(entries) => {
+                let rules = below(rules, |part| part == "*");
+                entries.iter().for_each(|(key, entry)| self.step(&format!(".{key}"), entry, &rules));
+            }
+            Value::Struct(name, fields) => {
+                let rules = of_variant(rules, name);
+                for (field, value) in fields {
+                    let Some(field) = field.as_word() else { continue };
+                    self.step(&format!(".{field}"), value, &below(&rules, |part| matches(part, field)));
+                }
             }
         }
     }
-    found
+
+    fn step(&mut self, segment: &str, node: &Node, rules: &[Rule]) {
+        let end = self.path.len();
+        self.path += if end == 0 { segment.trim_start_matches('.') } else { segment };
+        self.node(node, rules);
+        self.path.truncate(end);
+    }
+}
+
+/// The rules inside a variant: of those that name it the rest, and all that name none.
+fn of_variant<'r>(rules: &[Rule<'r>], name: &str) -> Vec<Rule<'r>> {
+    if name.is_empty() {
+        return rules.to_vec();
+    }
+    let mut inside = below(rules, |part| part == name);
+    inside.extend(rules.iter().filter(|(path, _)| !path.starts_with(char::is_uppercase)));
+    inside
 }
 
 /// Whether a part of a path, perhaps with a star, is that of this field.
-fn matches(part: &str, name: &str) -> bool {
+pub(super) fn matches(part: &str, name: &str) -> bool {
     match part.split_once('*') {
         Some((before, after)) => name.starts_with(before) && name.ends_with(after),
         None => part == name,

@@ -1,6 +1,5 @@
 //! The rules of a scenario as they are written: costs, the mission, planning and right of way.
 
-use ron_tree::limits::Limit;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use teaming::GroupSizes;
@@ -264,43 +263,12 @@ pub struct RightOfWay {
     pub deadlock_steps: u32,
 }
 
-/// Checks the values of all rules.
+/// Checks what the rules ask of robots and arena.
 pub(super) fn rules(check: &mut Checker, file: &ScenarioFile) {
-    let mut rates = |field: &str, rates: &Rates| {
-        check.number(format!("{field}.per_step"), rates.per_step, limits::RATE);
-        check.number(format!("{field}.per_metre"), rates.per_metre, limits::RATE);
-        check.number(format!("{field}.per_second"), rates.per_second, limits::RATE);
-    };
-    rates("costs.energy", &file.costs.energy);
-    rates("costs.hp", &file.costs.hp);
-    let work = &file.costs.work;
-    check.number("costs.work.energy_per_second", work.energy_per_second, limits::WORK_RATE);
-    check.number("costs.work.hp_per_second", work.hp_per_second, limits::WORK_RATE);
-    let mission = &file.mission;
-    check.number("mission.energy_threshold", mission.energy_threshold, limits::THRESHOLD);
-    check.number("mission.hp_threshold", mission.hp_threshold, limits::THRESHOLD);
-    check.number("mission.rest_reserve", mission.rest_reserve, limits::REST_RESERVE);
-    check.number("mission.rest_s", mission.rest_s, limits::REST_S);
-    check.number("mission.loading_s", mission.loading_s, limits::LOADING_S);
     let least_reach = if file.errands.is_empty() { file.least_reach_m() } else { 0.0 };
-    check.number("mission.reach_m", mission.reach_m, Limit { least: least_reach, ..limits::REACH_M });
-    check.number(
-        "mission.area_margin_m",
-        mission.area_margin_m,
-        Limit { least: least_reach, ..limits::AREA_MARGIN_M },
-    );
-    check.number("mission.blind_speed_loss", mission.blind_speed_loss, limits::BLIND_SPEED_LOSS);
-    check.number("mission.load_speed_loss", mission.load_speed_loss, limits::LOAD_SPEED_LOSS);
-    check.number("mission.health_floor", mission.health_floor, limits::HEALTH_FLOOR);
-    check.number("mission.cut_off_s", mission.cut_off_s, limits::CUT_OFF_S);
-    check.number("planning.clearance_m", file.planning.clearance_m, limits::CLEARANCE_M);
+    check.at_least("mission.reach_m", file.mission.reach_m, least_reach, limits::REACH_M);
+    check.at_least("mission.area_margin_m", file.mission.area_margin_m, least_reach, limits::AREA_MARGIN_M);
     leaves_room(check, file);
-    check.number("planning.exposure_price_m", file.planning.exposure_price_m, limits::EXPOSURE_PRICE_M);
-    if let ResolverRule::Rotation(rule) | ResolverRule::Swap(rule) = file.conflicts.resolver {
-        check.number("conflicts.resolver.margin_m", rule.margin_m, limits::MARGIN_M);
-        check.number("conflicts.resolver.horizon_s", rule.horizon_s, limits::HORIZON_S);
-        check.count("conflicts.resolver.deadlock_steps", rule.deadlock_steps, limits::DEADLOCK_STEPS);
-    }
 }
 
 /// Checks that routes that keep clear of the walls of the arena leave room in it for the largest robot.

@@ -71,26 +71,12 @@ impl Scatter {
 pub(super) fn scatter(check: &mut Checker, file: &ScenarioFile) {
     for (i, scatter) in file.scatter.iter().enumerate() {
         let field = format!("scatter[{i}]");
-        check.count(format!("{field}.count"), scatter.count, limits::SCATTERED);
-        for end in scatter.radius_m.support() {
-            check.number(format!("{field}.radius_m"), end, limits::SAMPLED_RADIUS_M);
-        }
+        check.amount(&format!("{field}.radius_m"), &scatter.radius_m, limits::SAMPLED_RADIUS_M);
         for (k, corner) in scatter.within.iter().flatten().enumerate() {
             check.inside(format!("{field}.within[{k}]"), *corner, 0.0);
         }
-        if let Placement::Poisson(gap) = scatter.place {
-            check.number(format!("{field}.place"), gap, limits::GAP_M);
-        }
-        if let Some(movable) = scatter.movable {
-            check.number(format!("{field}.movable.mass_kg"), movable.mass_kg, limits::PIECE_MASS_KG);
-            check.number(format!("{field}.movable.friction"), movable.friction, limits::FRICTION);
-            if scatter.what == Scattered::Radiation {
-                check.fail(
-                    format!("{field}.movable"),
-                    "must be absent: radiation cannot be pushed",
-                    "a mass",
-                );
-            }
+        if scatter.movable.is_some() && scatter.what == Scattered::Radiation {
+            check.fail(format!("{field}.movable"), "must be absent: radiation cannot be pushed", "a mass");
         }
     }
 }

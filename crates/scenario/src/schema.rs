@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 
 use super::distribution::{Amount, Distribution};
 use super::file::{Door, Point, ResolverRule, RightOfWay, ScenarioFile, WallFile};
-use super::ranges;
+use super::schema_ranges::put_ranges;
 
 impl JsonSchema for Amount {
     fn schema_name() -> Cow<'static, str> {
@@ -87,7 +87,7 @@ pub fn scenario_schema() -> Value {
     let mut generator = SchemaSettings::draft2020_12().into_generator();
     generator.subschema_for::<Distribution>();
     let mut schema = Value::from(generator.into_root_schema_for::<ScenarioFile>());
-    ranges::put(&mut schema);
+    put_ranges(&mut schema);
     let all = schema.as_object_mut();
     let Some(all) = all else { return schema };
     if let Some(properties) = all.get_mut("properties").and_then(Value::as_object_mut) {

@@ -210,7 +210,6 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
     unique(check, &sources);
     for (i, moment) in file.timeline.iter().enumerate() {
         let field = format!("timeline[{i}].event");
-        check.number(format!("timeline[{i}].at_s"), moment.at_s, limits::AT_S);
         match &moment.event {
             Happening::DebrisFalls { .. } => {}
             Happening::Opens(name) | Happening::Closes(name) => {
@@ -220,10 +219,7 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
                     check.fail(&field, "must name fixed debris", format!("{name:?}, which can be pushed"));
                 }
             }
-            Happening::SourceAppears { at, radius_m, .. } => {
-                check.inside(format!("{field}.at"), *at, 0.0);
-                check.number(format!("{field}.radius_m"), *radius_m, limits::ZONE_RADIUS_M);
-            }
+            Happening::SourceAppears { at, .. } => check.inside(format!("{field}.at"), *at, 0.0),
             Happening::SourceDies(name) => {
                 let rule = "must name a radiation source that has a name";
                 named(check, &field, name, &source_names, rule);
@@ -235,23 +231,13 @@ pub(super) fn timeline(check: &mut Checker, file: &ScenarioFile) {
                 self::robot(check, &format!("{field}.robot"), *robot, file);
                 deceit::told(check, &field, lie, on, file);
             }
-            Happening::RobotSlows { robot, factor } => {
+            Happening::RobotSlows { robot, .. }
+            | Happening::BatteryFades { robot, .. }
+            | Happening::RobotLoses { robot, .. } => {
                 self::robot(check, &format!("{field}.robot"), *robot, file);
-                check.number(format!("{field}.factor"), *factor, limits::SLOWED);
             }
-            Happening::BatteryFades { robot, factor } => {
-                self::robot(check, &format!("{field}.robot"), *robot, file);
-                check.number(format!("{field}.factor"), *factor, limits::FADED);
-            }
-            Happening::RobotLoses { robot, energy, hp } => {
-                self::robot(check, &format!("{field}.robot"), *robot, file);
-                check.number(format!("{field}.energy"), *energy, limits::LOSS);
-                check.number(format!("{field}.hp"), *hp, limits::LOSS);
-            }
-            Happening::RescueesAppear { task, grid } => {
+            Happening::RescueesAppear { task, .. } => {
                 self::task(check, &format!("{field}.task"), task, file);
-                check.count(format!("{field}.grid[0]"), grid[0], limits::GRID);
-                check.count(format!("{field}.grid[1]"), grid[1], limits::GRID);
             }
             Happening::TaskBegins(name) | Happening::TaskEnds(name) => self::task(check, &field, name, file),
         }

@@ -1,17 +1,14 @@
 //! The rules of a scenario: every value is in its range, and the values are consistent.
 
-use ron_tree::limits::Limit;
-
 use super::checker::{Checker, entry, is_device, meant, names, shown};
 use super::debris::{ROUNDING_M, debris};
 use super::deceit::deceit;
 use super::errands::{errands, places_are_free};
 use super::error::Problem;
 use super::feasibility::feasibility;
-use super::file::{
-    Amount, Fidelity, Happening, Measure, NeedFile, Normal, RoleFile, RoleKind, ScenarioFile, TaskFile,
-};
+use super::file::{Fidelity, Happening, Measure, NeedFile, RoleFile, RoleKind, ScenarioFile, TaskFile};
 use super::homes::homes_are_free;
+use super::ranges::in_range;
 use super::rules::rules;
 use super::scatter::scatter;
 use super::telemetry::telemetry;
@@ -40,14 +37,12 @@ pub(super) fn problems_of_values(file: &ScenarioFile) -> Vec<Problem> {
 
 fn of_values(file: &ScenarioFile) -> Checker {
     let mut check = Checker { problems: Vec::new(), arena: file.arena_m };
-    sizes(&mut check, file);
-    if !check.problems.is_empty() {
+    if !(in_range(&mut check, &file.plain_tree()) && totals_are_sound(&mut check, file)) {
         return check; // the rules below take time with each entry
     }
     general(&mut check, file);
     team(&mut check, file);
     roles(&mut check, file);
-    levels(&mut check, file);
     if file.errands.is_empty() {
         tasks(&mut check, file);
     } else {
@@ -90,54 +85,31 @@ fn words(check: &mut Checker, words: &Words) {
     }
 }
 
-/// Checks the number of entries of each table and list. The time and memory of all later checks grow with it.
-fn sizes(check: &mut Checker, file: &ScenarioFile) {
-    check.entries("team", file.team.len(), limits::ROWS);
-    let total: u64 = file.team.iter().map(|row| u64::from(row.count)).sum();
-    if !limits::ROBOTS.allows(total as usize) {
-        check.fail("team", format!("must have 1 to {} robots", limits::ROBOTS.most), total);
-    }
-    check.entries("roles", file.roles.len(), limits::ROLES);
-    for (i, role) in file.roles.iter().enumerate() {
-        check.entries(format!("roles[{i}].constants"), role.constants.len(), limits::CONSTANTS);
-    }
-    check.entries("needs", file.needs.len(), limits::NEEDS);
-    let tasks = Limit { least: 0.0, ..limits::TASKS };
-    check.entries("tasks", file.tasks.len(), tasks);
-    for (i, task) in file.tasks.iter().enumerate() {
-        check.entries(format!("tasks[{i}].quota"), task.quota.len(), Limit { least: 0.0, ..limits::ROLES });
-        check.entries(
-            format!("tasks[{i}].requires"),
-            task.requires.len(),
-            Limit { least: 0.0, ..limits::NEEDS },
-        );
-        check.entries(format!("tasks[{i}].after"), task.after.len(), tasks);
-    }
-    let rescuees = file.tasks.iter().map(|task| u64::from(task.grid[0]) * u64::from(task.grid[1]));
+/// Checks what all entries together make. The time and memory of all later checks grow with it.
+fn totals_are_sound(check: &mut Checker, file: &ScenarioFile) -> bool {
+    let grid = |grid: &[u32; 2]| u64::from(grid[0]) * u64::from(grid[1]);
     let later = file.timeline.iter().filter_map(|moment| match &moment.event {
-        Happening::RescueesAppear { grid, .. } => Some(u64::from(grid[0]) * u64::from(grid[1])),
+        Happening::RescueesAppear { grid, .. } => Some(grid),
         _ => None,
     });
-    let rescuees = rescuees.chain(later).fold(0, u64::saturating_add);
-    let each_is_sound =
-        file.tasks.iter().flat_map(|task| task.grid).all(|side| limits::GRID.allows(side as usize));
-    if each_is_sound && !limits::RESCUEES.allows(rescuees as usize) {
-        check.fail("tasks", format!("must have at most {} rescuees in all", limits::RESCUEES.most), rescuees);
-    }
-    check.entries("errands", file.errands.len(), limits::ERRANDS);
-    check.entries("debris", file.debris.len(), limits::DEBRIS);
-    check.entries("walls", file.walls.len(), limits::WALLS);
-    for (i, wall) in file.walls.iter().enumerate() {
-        check.entries(format!("walls[{i}].doors"), wall.doors.len(), limits::DOORS);
-    }
-    check.entries("radiation", file.radiation.len(), limits::ZONES);
-    check.entries("scatter", file.scatter.len(), limits::SCATTERS);
+    let rescuees = file.tasks.iter().map(|task| &task.grid).chain(later).map(grid);
+    let rescuees = rescuees.fold(0, u64::saturating_add);
+    let is_sound = |side: &u32| limits::GRID.allows(*side as usize);
+    let are_sound = file.tasks.iter().flat_map(|task| &task.grid).all(is_sound);
+    let robots: u64 = file.team.iter().map(|row| u64::from(row.count)).sum();
     let scattered: u64 = file.scatter.iter().map(|entry| u64::from(entry.count)).sum();
-    if !limits::SCATTERED.allows(scattered as usize) {
-        let rule = format!("must place at most {} things in all", limits::SCATTERED.most);
-        check.fail("scatter", rule, scattered);
+    let mut all_are_sound = true;
+    for (table, limit, rule, total) in [
+        ("team", limits::ROBOTS, "must have 1 to {} robots", robots),
+        ("tasks", limits::RESCUEES, "must have at most {} rescuees in all", rescuees),
+        ("scatter", limits::SCATTERED, "must place at most {} things in all", scattered),
+    ] {
+        if !limit.allows(total as usize) && (table != "tasks" || are_sound) {
+            all_are_sound = false;
+            check.fail(table, rule.replace("{}", &limit.most.to_string()), total);
+        }
     }
-    check.entries("timeline", file.timeline.len(), limits::MOMENTS);
+    all_are_sound
 }
 
 fn general(check: &mut Checker, file: &ScenarioFile) {
@@ -155,14 +127,9 @@ fn general(check: &mut Checker, file: &ScenarioFile) {
     } else if is_device(&file.name) {
         check.fail("name", "must not be the name of a device on Windows", shown(&file.name));
     }
-    check.number("duration_s", file.duration_s, limits::DURATION_S);
-    check.number("dt_s", file.dt_s, limits::DT_S);
     if file.fidelity == Some(Fidelity::Coarse) {
         check.fail("fidelity", "must be left out: longer steps are a larger dt_s", "Coarse");
     }
-    check.number("control_period_s", file.control_period_s, limits::CONTROL_PERIOD_S);
-    check.number("arena_m[0]", file.arena_m[0], limits::ARENA_M);
-    check.number("arena_m[1]", file.arena_m[1], limits::ARENA_M);
 }
 
 fn team(check: &mut Checker, file: &ScenarioFile) {
@@ -178,14 +145,9 @@ fn team(check: &mut Checker, file: &ScenarioFile) {
         if row.body.is_some() {
             self::role(check, &format!("{field}.body"), &role, file);
         }
-        check.number(format!("{field}.width_m"), row.width_m, limits::ROW_WIDTH_M);
         if let Some(levels) = &row.levels {
-            for (name, level) in [("energy", &levels.energy), ("hp", &levels.hp)] {
-                let ends = level.support();
-                let ends = if matches!(level, Amount::Fixed(_)) { &ends[..1] } else { &ends };
-                ends.iter()
-                    .for_each(|end| check.number(format!("{field}.levels.{name}"), *end, limits::LEVEL));
-            }
+            check.amount(&format!("{field}.levels.energy"), &levels.energy, limits::LEVEL);
+            check.amount(&format!("{field}.levels.hp"), &levels.hp, limits::LEVEL);
         }
         check.inside(format!("{field}.center"), [row.center[0] - row.width_m / 2.0, row.center[1]], radius);
         check.inside(format!("{field}.center"), [row.center[0] + row.width_m / 2.0, row.center[1]], radius);
@@ -212,7 +174,6 @@ fn needs(check: &mut Checker, file: &ScenarioFile) {
     names(check, "needs", file.needs.iter().map(|need| need.name.as_str()));
     for need in &file.needs {
         let field = entry("needs", &need.name);
-        check.number(format!("{field}.weight"), need.weight, limits::WEIGHT);
         let lacks = |role: &&RoleFile| !role.constants.contains_key(&need.name);
         if need.measures == Measure::Constant
             && let Some(role) = file.roles.iter().find(lacks)
@@ -248,19 +209,6 @@ fn at_best(role: &RoleFile, need: &NeedFile) -> f64 {
 }
 
 fn role(check: &mut Checker, field: &str, spec: &RoleFile, file: &ScenarioFile) {
-    check.number(format!("{field}.radius_m"), spec.radius_m, limits::ROBOT_RADIUS_M);
-    check.number(format!("{field}.mass_kg"), spec.mass_kg, limits::ROBOT_MASS_KG);
-    check.number(format!("{field}.hp"), spec.hp, limits::HP);
-    check.number(format!("{field}.energy"), spec.energy, limits::ENERGY);
-    check.number(format!("{field}.speed_mps"), spec.speed_mps, limits::SPEED_MPS);
-    check.number(format!("{field}.acceleration_mps2"), spec.acceleration_mps2, limits::ACCELERATION_MPS2);
-    check.number(format!("{field}.sensing_m"), spec.sensing_m, limits::SENSING_M);
-    check.number(format!("{field}.observing_m"), spec.observing_m, limits::OBSERVING_M);
-    check.count(format!("{field}.capacity"), spec.capacity, limits::CAPACITY);
-    check.count(format!("{field}.resources"), spec.resources, limits::RESOURCES);
-    for (name, value) in &spec.constants {
-        check.number(format!("{field}.constants.{name:?}"), *value, limits::CONSTANT);
-    }
     let (dt, step_m) = (file.dt_s, spec.speed_mps * file.dt_s);
     if step_m > spec.radius_m + ROUNDING_M {
         let rule = format!(
@@ -277,15 +225,6 @@ fn role(check: &mut Checker, field: &str, spec: &RoleFile, file: &ScenarioFile) 
     }
 }
 
-fn levels(check: &mut Checker, file: &ScenarioFile) {
-    let mut normal = |field: &str, Normal { mean, sd }: Normal| {
-        check.number(format!("{field}.mean"), mean, limits::LEVEL_MEAN);
-        check.number(format!("{field}.sd"), sd, limits::LEVEL_SD);
-    };
-    normal("initial_levels.energy", file.initial_levels.energy);
-    normal("initial_levels.hp", file.initial_levels.hp);
-}
-
 fn tasks(check: &mut Checker, file: &ScenarioFile) {
     if file.tasks.is_empty() {
         return check.fail("tasks", "must be given when there are no errands", "neither");
@@ -294,12 +233,8 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
     for task in &file.tasks {
         let field = entry("tasks", &task.name);
         task_area(check, &field, task);
-        check.count(format!("{field}.difficulty"), task.difficulty, limits::DIFFICULTY);
-        check.count(format!("{field}.sampled.debris"), task.sampled.debris, limits::SAMPLED_DEBRIS);
-        check.count(format!("{field}.sampled.radiation"), task.sampled.radiation, limits::SAMPLED_ZONES);
         told_facts(check, &field, file, task);
-        for (role, quota) in &task.quota {
-            check.count(format!("{field}.quota.{role:?}"), *quota, limits::QUOTA);
+        for role in task.quota.keys() {
             if !file.roles.iter().any(|known| known.name == *role) {
                 let known = file.roles.iter().map(|role| role.name.as_str());
                 let (rule, hint) = ("must name roles of the scenario", meant(role, known));
@@ -311,14 +246,7 @@ fn tasks(check: &mut Checker, file: &ScenarioFile) {
 
 /// Checks what policies are told of a task.
 fn told_facts(check: &mut Checker, field: &str, file: &ScenarioFile, task: &TaskFile) {
-    if let Some(value) = task.value {
-        check.number(format!("{field}.value"), value, limits::VALUE);
-    }
-    if let Some(seconds) = task.duration_s {
-        check.number(format!("{field}.duration_s"), seconds, limits::WORK_S);
-    }
-    for (need, least) in &task.requires {
-        check.number(format!("{field}.requires.{need:?}"), *least, limits::REQUIRED);
+    for need in task.requires.keys() {
         if !file.needs.iter().any(|known| known.name == *need) {
             let known = file.needs.iter().map(|need| need.name.as_str());
             let (rule, hint) = ("must name needs of the scenario", meant(need, known));
@@ -335,10 +263,6 @@ fn told_facts(check: &mut Checker, field: &str, file: &ScenarioFile, task: &Task
 }
 
 fn task_area(check: &mut Checker, field: &str, task: &TaskFile) {
-    check.number(format!("{field}.size_m[0]"), task.size_m[0], limits::BLOCK_M);
-    check.number(format!("{field}.size_m[1]"), task.size_m[1], limits::BLOCK_M);
-    check.count(format!("{field}.grid[0]"), task.grid[0], limits::GRID);
-    check.count(format!("{field}.grid[1]"), task.grid[1], limits::GRID);
     let [half_w, half_h] = task.size_m.map(|size| size / 2.0);
     for corner in [[-half_w, -half_h], [half_w, half_h]] {
         let corner = [task.center[0] + corner[0], task.center[1] + corner[1]];
@@ -347,18 +271,12 @@ fn task_area(check: &mut Checker, field: &str, task: &TaskFile) {
     check.inside(format!("{field}.rest"), task.rest, 0.0);
 }
 
+/// Checks that each greatest radius is at least the least one.
 fn sampled(check: &mut Checker, file: &ScenarioFile) {
     let sampled = &file.sampled;
     for (name, [least, greatest]) in
         [("debris_radius_m", sampled.debris_radius_m), ("zone_radius_m", sampled.zone_radius_m)]
     {
-        check.number(format!("sampled.{name}[0]"), least, limits::SAMPLED_RADIUS_M);
-        check.number(
-            format!("sampled.{name}[1]"),
-            greatest,
-            Limit { least: least.min(100.0), ..limits::SAMPLED_RADIUS_M },
-        );
+        check.at_least(&format!("sampled.{name}[1]"), greatest, least, limits::SAMPLED_RADIUS_M);
     }
-    check.number("sampled.gap_m", sampled.gap_m, limits::GAP_M);
-    check.number("sampled.strip_m", sampled.strip_m, limits::STRIP_M);
 }
