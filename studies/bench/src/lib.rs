@@ -25,6 +25,9 @@ pub use problem::{Problem, Robot, Skills, Task};
 pub use read::{read, write};
 pub use schedule::earliest;
 
+/// Hash of the sources of this study.
+pub const STUDY: &str = env!("STUDY");
+
 /// The README's example is compiled and run.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

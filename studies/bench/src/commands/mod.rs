@@ -5,7 +5,7 @@ mod summary;
 
 use std::time::{Duration, Instant};
 
-use experiments::experiment::{PolicySpec, split_list};
+use experiments::experiment::{PolicySpec, Program, split_list};
 use experiments::files::NewFile;
 use mrta::{Problem, cbba, dispatch, earliest, optimum};
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ the best schedule found where a problem is larger. A policy is asked whenever a 
 the tasks that are left. Two methods plan without being asked: EARLIEST takes the task that can start the \
 earliest, again and again; CBBA is the auction with bundles of sequences. studies/bench/docs/bench.md has the rules.
 
---out gets makespans.csv, and the problems that were made (problems/).
+--out gets makespans.csv, the problems that were made (problems/), and by what program (program.json).
 
 Examples:
   usar bench --generate 1000 --seed 1
@@ -91,7 +91,7 @@ impl Arguments {
             problems.par_iter().map(solve).collect::<Result<Vec<Solved>, Failure>>()
         })??;
         if let Some(place) = &self.out {
-            self.write(place, &problems, &solved)?;
+            self.write(place, &problems, &solved, &policies)?;
         }
         summary::told(&solved, self.shown.is_json())
     }
@@ -107,8 +107,17 @@ impl Arguments {
         }
     }
 
-    fn write(&self, place: &Path, problems: &[Problem], solved: &[Solved]) -> Result<(), Failure> {
+    fn write(
+        &self,
+        place: &Path,
+        problems: &[Problem],
+        solved: &[Solved],
+        policies: &[PolicySpec],
+    ) -> Result<(), Failure> {
         make_folder(place, self.replace.force)?;
+        let program = Program::running(policies)?.digest().to_string();
+        let program = serde_json::json!({"program": program, "study": mrta::STUDY});
+        NewFile::write(place, "program.json", format!("{program:#}\n").as_bytes())?;
         NewFile::write(place, "makespans.csv", summary::csv(solved)?.as_bytes())?;
         if self.generate.is_some() {
             let folder = place.join("problems");

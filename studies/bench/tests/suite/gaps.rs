@@ -31,6 +31,8 @@ fn threads_change_no_byte_and_made_problems_can_be_read() {
     let table = |name: &str| read(&folder.path().join(name).join("makespans.csv"));
     assert_eq!(table("made-1"), table("made-2"));
     assert_eq!(table("made-1").lines().count(), 1 + 40 * 4);
+    let program = read(&folder.path().join("made-1/program.json"));
+    assert!(program.contains(&format!("\"study\": \"{}\"", mrta::STUDY)), "{program}");
     run("bench made-1/problems --policies RANDOM,GREEDY --quiet --limit 3 --out read");
     assert!(table("made-1").starts_with(&table("read")), "{}", table("read"));
 }
