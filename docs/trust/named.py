@@ -26,7 +26,7 @@ LIES = {  # as in the variants of trust-filter.ron
 
 found = json.load(sys.stdin)
 worth = {}  # of a policy under a lie: by number of liars
-for row in found["policies"]:
+for row in found["tables"]["policies"]:
     worth[row["policy"], row["lie"]] = [one["mean"] for one in row["differences"]]
 
 
@@ -36,8 +36,8 @@ def under_liars(policy, lie):
     return float("-inf") if None in values else sum(values)
 
 
-policies = list(dict.fromkeys(row["policy"] for row in found["policies"]))
-lies = list(dict.fromkeys(row["lie"] for row in found["policies"]))
+policies = list(dict.fromkeys(row["policy"] for row in found["tables"]["policies"]))
+lies = list(dict.fromkeys(row["lie"] for row in found["tables"]["policies"]))
 alone = [policy for policy in policies if " <- " not in policy and policy != "RANDOM"]
 rules = sorted(alone, key=lambda rule: -worth[rule, lies[0]][0])[:2]
 lie = min(lies, key=lambda lie: sum(under_liars(rule, lie) for rule in rules))

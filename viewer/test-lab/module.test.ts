@@ -199,9 +199,9 @@ describe('comparisons', () => {
         writeFileSync(file, text('scenarios/paper.ron')); // alone: no sweep file beside it names a margin
         command('sweep', file, '--trials', '12', '--policies', 'RNE,DIS', '--quiet', '--out', out);
         const told = JSON.parse(command('compare', out, '--metric', 'rescuees.total', '--json')) as {
-          comparisons: { metric: string; a: string; b: string }[];
+          tables: { comparisons: { metric: string; a: string; b: string }[] };
         };
-        const [theirs] = told.comparisons;
+        const [theirs] = told.tables.comparisons;
         const { metric, a, b } = theirs;
         const value = (policy: string, seed: number): [number, string] => {
           const { line } = run(module, { path: 'scenarios/paper.ron', policy, seed: String(seed) });

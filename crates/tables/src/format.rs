@@ -3,6 +3,8 @@
 use std::io;
 use std::sync::OnceLock;
 
+use serde_json::Value;
+
 use crate::blocks::in_blocks;
 use crate::rows::csv;
 use crate::text::{Entry, Table};
@@ -71,7 +73,7 @@ impl Format {
             Self::Markdown => markdown(&header, &rows),
             Self::Csv => csv(&header, rows)?,
             Self::Latex => latex(&header, &rows),
-            Self::Json => json(&header, &rows)?,
+            Self::Json => format!("[{}]\n", table.objects()?.join(",")),
         })
     }
 }
@@ -95,6 +97,23 @@ impl Table {
         };
         (names.iter().enumerate().map(unique).collect(), self.rows.iter().map(full).collect())
     }
+
+    /// The rows as objects of JSON, whose fields keep the order of the columns.
+    ///
+    /// # Errors
+    /// None: they are written to memory.
+    pub fn objects(&self) -> io::Result<Vec<String>> {
+        let (header, _) = self.lines();
+        let object = |row: &Vec<Entry>| {
+            let cells = row.iter().map(Entry::json).chain(std::iter::repeat(Value::Null));
+            let field = |(name, cell)| Ok(format!("{}:{cell}", serde_json::to_string(name)?));
+            Ok(format!(
+                "{{{}}}",
+                header.iter().zip(cells).map(field).collect::<io::Result<Vec<_>>>()?.join(",")
+            ))
+        };
+        self.rows.iter().map(object).collect()
+    }
 }
 
 /// The alignment of each column: on the right, as columns of numbers are, or on the left.
@@ -111,16 +130,6 @@ fn markdown(header: &[String], rows: &[Vec<String>]) -> String {
     let rules = alignments(header, rows, ["---", "---:"].map(str::to_owned));
     let rows = rows.iter().map(|row| escaped(row)).collect::<String>();
     format!("\n{}{}{rows}\n", escaped(header), line(&rules))
-}
-
-/// Objects whose fields keep the order of the columns.
-fn json(header: &[String], rows: &[Vec<String>]) -> io::Result<String> {
-    let text = |text: &String| serde_json::to_string(text);
-    let object = |row: &Vec<String>| {
-        let cells = header.iter().zip(row).map(|(name, cell)| Ok(format!("{}:{}", text(name)?, text(cell)?)));
-        Ok(format!("{{{}}}", cells.collect::<io::Result<Vec<_>>>()?.join(",")))
-    };
-    Ok(format!("[{}]\n", rows.iter().map(object).collect::<io::Result<Vec<_>>>()?.join(",")))
 }
 
 fn latex(header: &[String], rows: &[Vec<String>]) -> String {
@@ -153,11 +162,11 @@ fn escaped(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::right;
+    use crate::text::{right, valued};
 
     fn table() -> Table {
         let mut table = Table::new(["policy", "mean, sd"]);
-        table.add(["A_1|x".into(), right("3.5 ± 1")]);
+        table.add(["A_1|x".into(), valued([3.5, 1.0], "3.5 ± 1")]);
         table.add(["  b & c".into(), right("< 1 %")]);
         table
     }
@@ -182,7 +191,7 @@ mod tests {
         );
         is(
             Format::Json,
-            "[{\"policy\":\"A_1|x\",\"mean, sd\":\"3.5 ± 1\"},{\"policy\":\"b & c\",\"mean, sd\":\"< \
+            "[{\"policy\":\"A_1|x\",\"mean, sd\":[3.5,1.0]},{\"policy\":\"b & c\",\"mean, sd\":\"< \
              1 %\"}]\n",
         );
         assert!(Format::Table.write(&table()).unwrap().starts_with('┌'));
@@ -193,6 +202,7 @@ mod tests {
         let mut table = Table::new(["a", "b", "c"]);
         table.add(["1"]);
         assert_eq!(Format::Csv.write(&table).unwrap(), "a,b,c\n1,,\n");
+        assert_eq!(Format::Json.write(&table).unwrap(), "[{\"a\":\"1\",\"b\":null,\"c\":null}]\n");
         assert_eq!(Format::Markdown.write(&table).unwrap().lines().nth(3), Some("| 1 |  |  |"));
     }
 }

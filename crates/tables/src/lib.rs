@@ -29,4 +29,4 @@ pub use column::{About, Cell, Column, Columns, Kind, abouts};
 pub use format::{Format, fold_at, is_wide, show_as, shown_as};
 pub use page::section;
 pub use rows::{Csv, csv};
-pub use text::{Entry, Table, labelled, or_dash, right, right_or_dash};
+pub use text::{Entry, Table, labelled, or_dash, right, right_or_dash, valued};

@@ -2,18 +2,40 @@
 
 use comfy_table::presets::UTF8_FULL_CONDENSED;
 use comfy_table::{Cell, CellAlignment};
+use serde::Serialize;
+use serde_json::{Number, Value};
 
 /// A text in a table.
 #[derive(Debug, Clone)]
 pub struct Entry {
     /// The text.
     pub text: String,
+    /// What programs get instead of the text.
+    value: Option<Value>,
     is_right: bool,
+}
+
+impl Entry {
+    /// The same text; programs get this value instead.
+    #[must_use]
+    pub fn with(self, value: impl Serialize) -> Self {
+        Self { value: serde_json::to_value(value).ok(), ..self }
+    }
+
+    /// The entry for programs: its value in full; without one, the number or the text that it is.
+    pub(crate) fn json(&self) -> Value {
+        let number = || serde_json::from_str::<Number>(&self.text).ok().filter(|_| self.is_right);
+        match &self.value {
+            Some(value) => value.clone(),
+            None if self.text == "-" => Value::Null,
+            None => number().map_or_else(|| self.text.as_str().into(), Value::Number),
+        }
+    }
 }
 
 impl<T: ToString> From<T> for Entry {
     fn from(text: T) -> Self {
-        Self { text: text.to_string(), is_right: false }
+        Self { text: text.to_string(), value: None, is_right: false }
     }
 }
 
@@ -22,9 +44,14 @@ pub fn right(text: impl ToString) -> Entry {
     Entry { is_right: true, ..text.into() }
 }
 
+/// An entry aligned on the right that is this value for programs.
+pub fn valued(value: impl Serialize, text: impl ToString) -> Entry {
+    right(text).with(value)
+}
+
 /// A value as an entry aligned on the right; a dash if there is none.
-pub fn right_or_dash<T>(value: Option<T>, text: impl FnOnce(T) -> String) -> Entry {
-    right(or_dash(value, text))
+pub fn right_or_dash<T: Serialize + Copy>(value: Option<T>, text: impl FnOnce(T) -> String) -> Entry {
+    valued(value, or_dash(value, text))
 }
 
 /// A value as text; a dash if there is none.
@@ -67,7 +94,7 @@ impl Table {
 
     /// The table with box lines.
     pub(crate) fn boxed(&self) -> String {
-        let cell = |Entry { text, is_right }: &Entry| {
+        let cell = |Entry { text, is_right, .. }: &Entry| {
             let cell = Cell::new(text);
             if *is_right { cell.set_alignment(CellAlignment::Right) } else { cell }
         };

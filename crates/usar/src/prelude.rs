@@ -5,7 +5,7 @@ pub use std::path::{Path, PathBuf};
 
 pub use clap::Args;
 pub use experiments::{Failure, refuse};
-pub use tables::{Entry, Table, labelled, or_dash, right, right_or_dash};
+pub use tables::{Entry, Table, labelled, or_dash, right, right_or_dash, valued};
 pub use teaming::Registry;
 
 pub use crate::output::{Destination, make_folder};

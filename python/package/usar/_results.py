@@ -160,7 +160,7 @@ def compare(
     chosen += ["--baseline", baseline] if baseline else []
     chosen += [word for metric, most in (margins or {}).items() for word in ("--margin", f"{metric}={most}")]
     printed = _command("compare", str(_path(results)), "--json", *chosen)
-    return list(json.loads(printed)["comparisons"])
+    return list(json.loads(printed)["tables"].get("comparisons", []))
 
 
 def report(results: Union[Results, str, os.PathLike[str]], title: Optional[str] = None) -> Path:

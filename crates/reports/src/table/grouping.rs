@@ -1,7 +1,7 @@
 //! Tables of how policies group.
 
 use experiments::rounds::{GroupLevels, KEYS, Share, SortingAgreement};
-use tables::{Entry, Format, Table, right, right_or_dash, shown_as};
+use tables::{Entry, Format, Table, right, right_or_dash, shown_as, valued};
 
 /// How often each policy's split equals sorting.
 pub fn likeness_table(policies: &[(String, [SortingAgreement; 3])]) -> Table {
@@ -16,7 +16,9 @@ pub fn likeness_table(policies: &[(String, [SortingAgreement; 3])]) -> Table {
     let mut table = Table::new(header);
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let beside = |share: &Share| match (share.share(), share.chance()) {
-        (Some(share), Some(chance)) => right(format!("{} ({})", percent(share), percent(chance))),
+        (Some(share), Some(chance)) => {
+            valued([share, chance], format!("{} ({})", percent(share), percent(chance)))
+        }
         _ => right("-"),
     };
     for (label, agreements) in policies {
@@ -48,7 +50,7 @@ pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
         header.push(format!("{level} difference"));
     }
     let mut table = Table::new(header);
-    let shown = |level: f64| right(format!("{level:.1}"));
+    let shown = |level: f64| valued(level, format!("{level:.1}"));
     let mut last = "";
     for row in levels {
         let label = if row.policy == last && !is_repeated() { "" } else { &row.policy };
@@ -57,7 +59,8 @@ pub fn levels_table(levels: &[GroupLevels], tasks: &[String]) -> Table {
         for level in [0, 1] {
             cells.extend(row.groups.iter().map(|group| shown(group[level])));
             let ends = row.groups.first().zip(row.groups.last());
-            cells.push(right_or_dash(ends, |(a, b)| format!("{:+.1}", a[level] - b[level])));
+            let difference = ends.map(|(a, b)| a[level] - b[level]);
+            cells.push(right_or_dash(difference, |difference| format!("{difference:+.1}")));
         }
         table.add(cells);
     }

@@ -8,7 +8,7 @@ use experiments::experiment::{Experiment, PolicySpec};
 use experiments::sweep::folder::Folder;
 use scenario::Words;
 use statistics::Moments;
-use tables::{Entry, Format, Table, labelled, or_dash, right, right_or_dash, shown_as};
+use tables::{Entry, Format, Table, labelled, or_dash, right, right_or_dash, shown_as, valued};
 use usar_sim::event::ReturnCause;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::TrialRecord;
@@ -24,7 +24,10 @@ const MOST_COLUMNS: usize = 8;
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let trials = folder.trials_of(case);
-    let cell = |policy, metric| right(moments(&moments_of(folder, (case, policy), metric), trials));
+    let cell = |policy, metric| {
+        let found = moments_of(folder, (case, policy), metric);
+        right(moments(&found, trials)).with(found.mean)
+    };
     let primary = || metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
     if policies.len() > MOST_COLUMNS {
         let names = primary().map(|(_, metric)| right(&metric.name));
@@ -60,7 +63,7 @@ pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
         [
             format!("{} - {}", c.a, c.b).into(),
             number(c.difference),
-            right(between(c.interval)),
+            range(c.interval),
             right_or_dash(c.p_holm, short_p),
             c.verdict_in_words().into(),
         ]
@@ -71,6 +74,11 @@ pub fn verdict_table(comparisons: &[&Comparison]) -> Table {
 /// An interval in words.
 pub fn between(interval: Option<[f64; 2]>) -> String {
     or_dash(interval, |[low, high]| format!("{} to {}", short(low), short(high)))
+}
+
+/// An interval as a cell; a dash if there is none.
+pub fn range(interval: Option<[f64; 2]>) -> Entry {
+    valued(interval, between(interval))
 }
 
 /// A short number as a cell; a dash if there is none.
@@ -100,7 +108,7 @@ pub fn comparison_table(comparisons: &[&Comparison]) -> Table {
             mean(c.mean_a),
             mean(c.mean_b),
             number(c.difference),
-            right(between(c.interval)),
+            range(c.interval),
             number(c.shift),
             p(c.p),
             p(c.p_holm),
@@ -121,13 +129,13 @@ pub fn rounds_table(record: &TrialRecord, words: &Words, is_wide: bool) -> Table
         [
             ("round", true, right(round.round)),
             ("task", true, Entry::from(&record.tasks[round.task.index()].task)),
-            ("from s", false, right(format!("{:.1}", round.start_s))),
+            ("from s", false, valued(round.start_s, format!("{:.1}", round.start_s))),
             ("to s", true, right_or_dash(round.end_s, |end| format!("{end:.1}"))),
             ("members", true, members.join(" ").into()),
             ("secured", false, right(round.secured)),
             ("rescued", true, right(round.rescued)),
-            ("energy", true, right(format!("{:.1}", round.energy))),
-            ("HP", false, right(format!("{:.2}", round.hp))),
+            ("energy", true, valued(round.energy, format!("{:.1}", round.energy))),
+            ("HP", false, valued(round.hp, format!("{:.2}", round.hp))),
             ("turned back", false, right(round.turned_back)),
             ("went home: why", true, round.return_cause.map_or("-", ReturnCause::name).into()),
         ]

@@ -125,7 +125,7 @@ pub struct ReplaceArgument {
 /// Whether the result is JSON.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct JsonArgument {
-    /// Print JSON
+    /// Print the sentences and the tables as one object of JSON
     #[arg(long)]
     pub json: bool,
 }
@@ -175,7 +175,7 @@ pub fn format_of(command: &ArgMatches) -> Format {
     let format = command.try_get_one::<FormatName>("format").ok().flatten();
     let is_json = command.try_get_one::<bool>("json").is_ok_and(|json| json == Some(&true));
     match format {
-        Some(_) if is_json => Format::Json,
+        _ if is_json => Format::Json,
         None | Some(FormatName::Table) => Format::Table,
         Some(FormatName::Md) => Format::Markdown,
         Some(FormatName::Csv) => Format::Csv,

@@ -85,16 +85,14 @@ fn check_each(files: &[PathBuf], check: impl Fn(&Path) -> Result<String, Failure
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         if let Some(policy) = &self.policy {
-            return policy::check(policy, registry, self.json.json);
+            return policy::check(policy, registry);
         }
         let checked = check_each(&self.files, |file| check(file, registry));
         let problems: Vec<&str> = checked.iter().flat_map(|one| &one.problems).map(String::as_str).collect();
-        if self.json.json {
-            Report::json(&serde_json::json!({"files": checked}))?.print()?;
-        } else {
-            let told = |Checked { file, told, .. }: &Checked| Some(format!("{file}: {}", told.as_ref()?));
-            Report::of(checked.iter().filter_map(told)).print()?;
-        }
+        let told = |Checked { file, told, .. }: &Checked| Some(format!("{file}: {}", told.as_ref()?));
+        let mut out = Report::of(checked.iter().filter_map(told));
+        out.rows("files", &checked)?;
+        out.print()?;
         if problems.is_empty() { Ok(Report::default()) } else { Err(Failure::input(problems.join("\n"))) }
     }
 }

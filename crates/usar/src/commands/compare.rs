@@ -1,16 +1,14 @@
 //! `usar compare`: paired comparisons of a sweep's policies.
 
 use experiments::comparison::{
-    Asked, CONFIDENCE, Comparison, Effect, Interaction, LEVEL, answer, answer_of_cases, compare, doubts,
-    effects, interactions, limit_of_changes, limit_of_correction, own_question, test_in_words,
-    what_would_settle,
+    Asked, Comparison, Effect, Interaction, answer, answer_of_cases, compare, doubts, effects, interactions,
+    limit_of_changes, limit_of_correction, own_question, test_in_words, what_would_settle,
 };
 use experiments::experiment::Experiment;
 use experiments::sweep::host::Hosts;
 use reports::table::{
     cases_table, comparison_table, differences_table, effects_table, interactions_table, verdict_table,
 };
-use serde_json::json;
 use statistics::bootstrap::resamples;
 
 use crate::arguments::{FamilyArguments, ShownArguments, WideArgument};
@@ -71,22 +69,10 @@ impl Arguments {
             effects: effects(&folder, &asked.metrics, asked.choice())?,
             interactions: interactions(&folder, &asked.metrics, asked.choice())?,
         };
-        if self.shown.is_json() {
-            let output = json!({
-                "sweep": experiment.name,
-                "trials": experiment.trials,
-                "is_complete": folder.manifest().is_complete,
-                "confidence": CONFIDENCE,
-                "level": LEVEL,
-                "own_question": own,
-                "doubts": doubts,
-                "comparisons": compared.comparisons,
-                "effects": compared.effects,
-                "interactions": compared.interactions,
-            });
-            return Report::json(&output);
-        }
         let mut out = Report::default();
+        out.rows("comparisons", &compared.comparisons)?;
+        out.rows("effects", &compared.effects)?;
+        out.rows("interactions", &compared.interactions)?;
         compared.tell_answer(&mut out);
         if self.wide.is_wide() {
             compared.tell_wide(&mut out);
@@ -124,7 +110,8 @@ impl Compared<'_> {
             if here.is_empty() {
                 self.tell_means(out, metric);
             } else {
-                out.titled(metric, if has_cases { cases_table(&here) } else { verdict_table(&here) });
+                out.say(metric);
+                out.show("comparisons", if has_cases { cases_table(&here) } else { verdict_table(&here) });
             }
         }
         if has_cases && !self.comparisons.is_empty() {
@@ -152,7 +139,7 @@ impl Compared<'_> {
             if !place.is_empty() {
                 out.say(place.trim_end_matches(": "));
             }
-            out.show(comparison_table(&self.of_case(i)));
+            out.show("comparisons", comparison_table(&self.of_case(i)));
         }
         out.extend(self.comparisons.iter().map(|one| &one.in_words));
         if self.effects.is_empty() {
@@ -172,10 +159,8 @@ impl Compared<'_> {
     /// The effects of the axes on each policy's mean.
     fn tell_means(&self, out: &mut Report, metric: &str) {
         let effects: Vec<&Effect> = self.effects.iter().filter(|one| one.metric == metric).collect();
-        out.titled(
-            format!("By how much each policy's mean changes, in percent of what it was: {metric}"),
-            effects_table(&effects),
-        );
+        out.say(format!("By how much each policy's mean changes, in percent of what it was: {metric}"));
+        out.show("effects", effects_table(&effects));
     }
 
     /// The differences case by case, and their changes.
@@ -184,14 +169,12 @@ impl Compared<'_> {
         if here.is_empty() {
             return;
         }
-        out.titled(
-            format!("\nDifferences between policies, case by case: {metric}"),
-            differences_table(&here),
-        );
+        out.say(format!("\nDifferences between policies, case by case: {metric}"));
+        out.show("comparisons", differences_table(&here));
         out.say(format!("\nBy how much these differences change: {metric}"));
         let changes: Vec<&Interaction> =
             self.interactions.iter().filter(|one| one.metric == metric).collect();
-        out.show(interactions_table(&changes));
+        out.show("interactions", interactions_table(&changes));
     }
 
     /// What everything stands on, and what limits it.

@@ -59,18 +59,6 @@ struct Side {
     record: TrialRecord,
 }
 
-#[derive(Serialize)]
-struct Output<'a> {
-    scenario: &'a str,
-    seed: u64,
-    round: u32,
-    time_s: f64,
-    base: &'a str,
-    fork: String,
-    as_it_was: &'a Side,
-    otherwise: &'a Side,
-}
-
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         stop_on_signals();
@@ -91,19 +79,6 @@ impl Arguments {
         let onwards = other_session.as_mut().filter(|_| self.onwards).unwrap_or(&mut base);
         let sides = [as_it_was, side(&start, otherwise, &mut **onwards)?];
         let fork = self.in_words(other.as_ref(), &asked.spec.label);
-        if self.shown.is_json() {
-            let output = Output {
-                scenario: &asked.scenario.name,
-                seed: asked.seed,
-                round: self.round,
-                time_s: trial.time_s(),
-                base: &asked.spec.label,
-                fork,
-                as_it_was: &sides[0],
-                otherwise: &sides[1],
-            };
-            return Report::json(&output);
-        }
         let mut out = Report::from(format!(
             "{}, seed {}, round {} at {:.1} s\nas it was  {} decides every round\nthe fork   {fork}",
             asked.scenario.name,
@@ -113,6 +88,7 @@ impl Arguments {
             asked.spec.label
         ));
         tell(&mut out, &asked, &sides);
+        out.rows("trials", &sides)?;
         Ok(out)
     }
 
@@ -185,6 +161,11 @@ pub(super) fn ids(group: &[u32]) -> String {
     if ids.is_empty() { "-".to_owned() } else { ids.join(" ") }
 }
 
+/// The ids of a group as a cell.
+pub(super) fn group(group: &[u32]) -> Entry {
+    valued(group, ids(group))
+}
+
 /// How many robots of a group are others, in words.
 fn changes(before: &[u32], after: &[u32]) -> String {
     let only = |here: &[u32], there: &[u32]| here.iter().filter(|id| !there.contains(id)).count();
@@ -200,17 +181,14 @@ fn tell(out: &mut Report, asked: &Trial, sides: &[Side; 2]) {
     let tasks = asked.tasks();
     let [before, after] = sides.each_ref().map(|side| &side.assignment.groups);
     let groups = tasks.iter().zip(before.iter().zip(after)).map(|(task, (was, fork))| {
-        [format!("group of {task}"), ids(was), ids(fork), changes(was, fork)].map(right)
+        [right(format!("group of {task}")), group(was), group(fork), right(changes(was, fork))]
     });
-    let mut table = Table::of(["", "as it was", "the fork", "difference"], groups);
+    let mut table = Table::of(["what", "as it was", "the fork", "difference"], groups);
     let mut row = |name: &str, value: &dyn Fn(&Side) -> f64, decimals: usize| {
         let [was, fork] = sides.each_ref().map(value);
-        let [was, fork, more] = [
-            format!("{was:.decimals$}"),
-            format!("{fork:.decimals$}"),
-            format!("{:+.decimals$}", fork - was),
-        ];
-        table.add([right(name), right(was), right(fork), right(more)]);
+        let number = |value: f64| valued(value, format!("{value:.decimals$}"));
+        let more = valued(fork - was, format!("{:+.decimals$}", fork - was));
+        table.add([right(name), number(was), number(fork), more]);
     };
     row("round: rescued", &|side| f64::from(side.round.total().rescued), 0);
     for (place, task) in tasks.iter().enumerate() {
@@ -225,7 +203,7 @@ fn tell(out: &mut Report, asked: &Trial, sides: &[Side; 2]) {
     }
     row("energy (points)", &|side| side.record.energy(), 1);
     row("HP (points)", &|side| side.record.hp(), 2);
-    out.show(table);
+    out.show("differences", table);
     let [was, fork] = sides.each_ref().map(|side| &side.state_hash);
     out.say(format!("state hash   as it was {was}\n             the fork  {fork}"));
     if was == fork {

@@ -115,11 +115,8 @@ impl Arguments {
         if let Some(path) = &self.csv {
             print::write_csv(path, &asked, &answers)?;
         }
-        if self.shown.is_json() {
-            print::json(&asked, &answers)
-        } else {
-            Ok(print::text(&asked, &answers, self.top))
-        }
+        let top = if self.shown.is_json() { usize::MAX } else { self.top };
+        Ok(print::text(&asked, &answers, top))
     }
 
     /// The choices of the policies that are judged.

@@ -106,7 +106,7 @@ impl Arguments {
             return Err(Failure::run(format!("trial of {} with seed {seed} failed: {reason}", spec.label)));
         }
         if self.shown.is_json() {
-            return Report::plain_json(&record.named(&scenario.name, &spec.label));
+            return Report::document(&record.named(&scenario.name, &spec.label));
         }
         let mut out = Report::from(format!(
             "{}, policy {}, seed {seed}: {} s simulated, {}",
@@ -116,7 +116,7 @@ impl Arguments {
             record.status.name().replace('_', " ")
         ));
         if !record.rounds.is_empty() {
-            out.show(rounds_table(&record, &scenario.words, self.wide.is_wide()));
+            out.show("rounds", rounds_table(&record, &scenario.words, self.wide.is_wide()));
         }
         tell(&mut out, &record, &scenario.words);
         if scenario.mission.empty_tasks == EmptyTasks::GetGroups {

@@ -182,10 +182,9 @@ impl Arguments {
             }
         };
         let alone = confirmed.values(0, 0, metric);
-        if self.json.json {
-            return Report::json(&found.as_json(comparison.as_ref(), &alone));
-        }
         let mut out = found.told(self.trials);
+        out.rows("found", [&found.in_numbers(&alone)])?;
+        out.rows("comparisons", &comparison)?;
         let last = self.confirm_seed + u64::from(self.confirm_trials) - 1;
         out.say(format!(
             "\nRun again on {} fresh seeds ({} to {last}), by which no candidate was judged:",
@@ -246,7 +245,7 @@ impl Found<'_> {
         out
     }
 
-    fn as_json(&self, comparison: Option<&Comparison>, alone: &[f64]) -> serde_json::Value {
+    fn in_numbers(&self, alone: &[f64]) -> serde_json::Value {
         let free = self.hunt.space.free.iter().zip(&self.best.values);
         let values: serde_json::Map<String, serde_json::Value> =
             free.map(|(free, value)| (free.name.clone(), (*value).into())).collect();
@@ -256,8 +255,6 @@ impl Found<'_> {
             "values": values,
             "on_search_seeds": self.outcome,
             "as_it_is_on_search_seeds": first.and_then(|first| first.outcome.clone().ok()),
-            "candidates": self.trail.entries.len(),
-            "confirmation": comparison,
             "confirmed_mean": Moments::of(alone).mean,
             "confirmed_interval": interval(alone, CONFIDENCE),
         })

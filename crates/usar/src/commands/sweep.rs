@@ -182,7 +182,7 @@ pub(crate) fn told(folder: &Folder) -> Report {
         if !place.is_empty() {
             out.say(place.trim_end_matches(": "));
         }
-        out.show(policy_table(folder, i));
+        out.show("policies", policy_table(folder, i));
     }
     if experiment.cases.len() > MAX_TABLES {
         let more = experiment.cases.len() - MAX_TABLES;

@@ -76,11 +76,13 @@ impl Arguments {
             suite.experiment.check(self.allow_expensive)?;
             suites.push(suite);
         }
-        let mut tested = Vec::new();
+        let (mut tested, mut out) = (Vec::new(), Report::default());
         for suite in suites {
             let found = suite.test(&self.progress)?;
+            out.extend(found.iter().map(in_words));
+            out.rows("expectations", &found)?;
             if !self.json.json {
-                Report::of(found.iter().map(in_words)).print()?;
+                std::mem::take(&mut out).print()?;
             }
             tested.extend(found);
         }
@@ -88,9 +90,7 @@ impl Arguments {
             write_junit(path, &tested)?;
         }
         let wanting = tested.iter().filter(|tested| tested.judgement.verdict != Verdict::Holds).count();
-        if self.json.json {
-            Report::json(&serde_json::json!({"expectations": tested}))?.print()?;
-        }
+        out.print()?;
         if wanting > 0 {
             return Err(Failure::run(format!("{wanting} of {} expectations do not hold", tested.len())));
         }

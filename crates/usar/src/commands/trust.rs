@@ -27,8 +27,8 @@ The maths takes more of a need for better. --less-is-better damage=100 says that
 100 is the worst: it counts as 100 - damage, what is left. A robot at the worst has none of that need, and \
 the RNE towards it from a robot that has some is infinite.
 
---json prints all pairs as `distrust` and `trust`, a row for each robot that trusts, in the order of `robots` \
-(infinite: null). With --policy it prints the groups by the ids of the table, and as `decision` the \
+--json prints all pairs in the tables `distrust` (infinite: null) and `trust`, a row for each robot that \
+trusts. With --policy it prints the groups by the ids of the table, and as `decision` the \
 decision, whose ids are numbers: those of the table, or, if any is a text, 1 for the first robot, and so on. \
 A question in JSON is answered by the decision alone.
 
@@ -71,11 +71,11 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
-        let (weights, is_json) = (self.weights.as_deref(), self.shown.is_json());
-        let Some(file) = &self.file else { return self.pair.told(weights, is_json) };
+        let weights = self.weights.as_deref();
+        let Some(file) = &self.file else { return self.pair.told(weights) };
         if let Some(policy) = &self.policy {
             let spec = parse_policy("--policy", policy, registry)?;
-            return groups::told(&self.team.read(file, weights)?, &spec, is_json);
+            return groups::told(&self.team.read(file, weights)?, &spec, self.shown.is_json());
         }
         let registry = self.measure.chosen_in(registry)?;
         let picture = |path: &PathBuf| PictureFile::of("--out", path, &["svg", "png", "pdf"], self.replace);
@@ -85,6 +85,6 @@ impl Arguments {
         if let Some(picture) = &picture {
             picture.write(&matrix.drawn())?;
         }
-        if is_json { matrix.as_json() } else { Ok(matrix.told()) }
+        matrix.told()
     }
 }

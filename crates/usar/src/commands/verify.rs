@@ -9,7 +9,7 @@ use experiments::provenance::{COMMIT, Manifest};
 use experiments::run::{Run, TrialKey, run_all};
 use experiments::sweep::audit::{difference, strange_files};
 use experiments::sweep::folder::Folder;
-use serde_json::{Value, json};
+use serde_json::json;
 use teaming::Basis;
 
 use crate::arguments::{JsonArgument, ProgressArguments, count};
@@ -79,19 +79,14 @@ impl Arguments {
         let strange = strange_files(&mut folder)?;
         #[cfg(feature = "exports")]
         let strange = [strange, strange_parquets(&folder)?].concat();
-        if self.json.json {
-            let differences: Vec<Value> = differences
-                .iter()
-                .map(|(TrialKey { case, label, seed, .. }, what)| {
-                    json!({"case": case + 1, "policy": label, "seed": seed, "difference": what})
-                })
-                .collect();
-            Report::json(&json!({
-                "trials": all.len(), "run_again": count, "of_programs": left_out.len(),
-                "differences": differences, "changed_files": strange,
-            }))?
-            .print()?;
-        }
+        let row = |(key, what): &(TrialKey, String)| {
+            let (case, policy, seed) = (key.case + 1, &key.label, key.seed);
+            json!({"case": case, "policy": policy, "seed": seed, "difference": what})
+        };
+        let mut out = Report::default();
+        out.rows("differences", &differences.iter().map(row).collect::<Vec<_>>())?;
+        out.rows("changed_files", &strange.iter().map(|what| json!({"what": what})).collect::<Vec<_>>())?;
+        out.rows("trials", [&json!({"all": all.len(), "run_again": count, "of_programs": left_out.len()})])?;
         let of_all = if count < all.len() { format!(" (of {})", all.len()) } else { String::new() };
         let verdict = match differences.first() {
             None => format!("{count} of {count} trials{of_all} match, step by step and number by number"),
@@ -106,24 +101,25 @@ impl Arguments {
                 counted(all.len(), "trial"),
                 if left_out.len() == 1 { "1 is".to_owned() } else { format!("{} are", left_out.len()) }
             );
-            return match (self.without_programs, self.json.json) {
-                (true, true) => Ok(Report::default()),
-                (true, false) => Ok(verdict.into()),
-                (false, _) => Err(Failure::run(format!(
-                    "{verdict}: --run-programs starts them, --without-programs leaves them out"
-                ))),
-            };
-        }
-        match strange.first() {
-            None if differences.is_empty() && damage.is_none() && self.json.json => Ok(Report::default()),
-            None if differences.is_empty() && damage.is_none() => {
-                Ok(format!("{verdict}; every table is what they give").into())
+            if self.without_programs {
+                out.say(verdict);
+                return Ok(out);
             }
-            None => Err(Failure::run(verdict)),
-            Some(_) => {
-                Err(Failure::run(format!("{verdict}; but files were changed\n{}", strange.join("\n"))))
-            }
+            out.print()?;
+            return Err(Failure::run(format!(
+                "{verdict}: --run-programs starts them, --without-programs leaves them out"
+            )));
         }
+        if is_sound {
+            out.say(format!("{verdict}; every table is what they give"));
+            return Ok(out);
+        }
+        out.print()?;
+        Err(Failure::run(if strange.is_empty() {
+            verdict
+        } else {
+            format!("{verdict}; but files were changed\n{}", strange.join("\n"))
+        }))
     }
 
     /// Runs trials again; returns those that differ from the folder's, with the difference.

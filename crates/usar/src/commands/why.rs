@@ -108,10 +108,9 @@ impl Arguments {
             refuse!("--round: no round {round} began up to {:.1} s", simulation.time_s());
         };
         let account = self.account(&asked, &simulation, record, watched)?;
-        if self.shown.is_json() {
-            return Report::json(&account);
-        }
-        Ok(told::text(&account, &asked))
+        let mut out = told::text(&account, &asked);
+        out.rows("account", [&account])?;
+        Ok(out)
     }
 
     /// Plays the trial up to the requested moment.

@@ -15,7 +15,8 @@ fn comparisons_are_paired_and_say_what_they_stand_on() {
         "compare results/paper --metric distance --metric rescuees.hard --baseline DIS --json",
     )))
     .unwrap();
-    let comparisons = json["comparisons"].as_array().unwrap();
+    assert_eq!(json["version"], 2);
+    let comparisons = json["tables"]["comparisons"].as_array().unwrap();
     assert_eq!(comparisons.len(), 4);
     let trials = rows(&here.join("results/paper"), "trials.csv");
     let distance = column(&here.join("results/paper"), "distance_m");
@@ -45,7 +46,10 @@ fn comparisons_are_paired_and_say_what_they_stand_on() {
     assert!(wide.contains("┆ detectable ┆") && !text.contains("detectable"), "{wide}");
     let all = succeeds(&usar(here, "compare results/paper --metric all --json"));
     let all: Value = serde_json::from_str(&all).unwrap();
-    assert!(all["comparisons"].as_array().unwrap().len() > 100, "every metric, every pair of policies");
+    assert!(
+        all["tables"]["comparisons"].as_array().unwrap().len() > 100,
+        "every metric, every pair of policies"
+    );
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     assert_eq!(text, succeeds(&usar(here, "compare results/paper")), "the bootstrap is seeded");
     refused(
@@ -143,7 +147,7 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         serde_json::from_str(&succeeds(&usar(here, &arguments))).unwrap()
     };
     let told = json(&[]);
-    let comparisons = told["comparisons"].as_array().unwrap();
+    let comparisons = told["tables"]["comparisons"].as_array().unwrap();
     let pairs: Vec<_> =
         comparisons.iter().map(|c| (c["a"].as_str().unwrap(), c["b"].as_str().unwrap())).collect();
     assert_eq!(pairs, [("RNE", "DIS"), ("ENG", "DIS")]);
@@ -180,8 +184,12 @@ fn a_sweep_file_names_its_metrics_its_baseline_and_which_differences_matter() {
         &["--margin: distance has two margins"],
     );
     let tight = json(&["--metric", "distance", "--baseline", "ENG", "--margin", "distance=1e-9"]);
-    let verdicts: Vec<_> =
-        tight["comparisons"].as_array().unwrap().iter().map(|c| c["verdict"].as_str().unwrap()).collect();
+    let verdicts: Vec<_> = tight["tables"]["comparisons"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| c["verdict"].as_str().unwrap())
+        .collect();
     assert_eq!(verdicts, ["undecided"; 2], "six pairs decide nothing");
     refused(
         here,
@@ -218,10 +226,10 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
     let cases = words.lines().filter(|line| line.starts_with('│')).count() - 1;
     assert_eq!(cases, 4, "a table of cases: {words}");
     assert!(words.contains("changes of means: none can be shown, however large"), "{words}");
-    let interactions = told["interactions"].as_array().unwrap();
+    let interactions = told["tables"]["interactions"].as_array().unwrap();
     // Two axes of two values: each value but the first, at both values of the other axis, for each policy
     // but the baseline.
-    let policies = told["comparisons"].as_array().unwrap().len() / 4;
+    let policies = told["tables"]["comparisons"].as_array().unwrap().len() / 4;
     assert_eq!(interactions.len(), 4 * policies);
     let results = here.join("results/grid");
     let (trials, at) = (rows(&results, "trials.csv"), column(&results, "distance_m"));
@@ -234,7 +242,7 @@ fn a_sweep_with_axes_says_how_differences_change_along_them() {
         };
         trials.iter().find(is_it).unwrap()[at].parse().unwrap()
     };
-    let effects = told["effects"].as_array().unwrap();
+    let effects = told["tables"]["effects"].as_array().unwrap();
     assert_eq!(effects.len(), 4 * (policies + 1), "the baseline, too");
     for one in effects {
         let policy = one["policy"].as_str().unwrap();
@@ -280,7 +288,7 @@ fn one_policy_is_compared_with_itself_along_an_axis() {
     assert!(!told.contains("Differences between policies"), "{told}");
     let program = succeeds(&usar(here, "compare results/one --metric distance --json"));
     let program: Value = serde_json::from_str(&program).unwrap();
-    let mean = program["effects"][0]["means"][0].as_f64().unwrap();
+    let mean = program["tables"]["effects"][0]["means"][0].as_f64().unwrap();
     let shown: f64 = means.split('┆').nth(1).unwrap().trim().trim_end_matches('│').trim().parse().unwrap();
     assert!((mean - shown).abs() < 0.01 * mean, "{mean} {means}");
 }
@@ -302,7 +310,7 @@ fn trials_that_repeat_one_another_count_once() {
     assert!(told.starts_with("No verdict: 1 of the 6 distinct pairs of trials that a test takes."), "{told}");
     assert!(told.contains("19 that repeat another to the last state"), "{told}");
     let json = succeeds(&usar(here, "compare results/fixed --metric energy --json"));
-    let one = &serde_json::from_str::<Value>(&json).unwrap()["comparisons"][0];
+    let one = &serde_json::from_str::<Value>(&json).unwrap()["tables"]["comparisons"][0];
     assert_eq!((&one["n"], &one["repeated"], &one["p"]), (&1.into(), &19.into(), &Value::Null));
     assert_eq!(one["verdict"], "undecided");
 }

@@ -23,12 +23,12 @@ fn json(folder: &std::path::Path, verb: &str, rest: &[&str]) -> Value {
     serde_json::from_str(&succeeds(&usar(folder, &arguments))).unwrap()
 }
 
-fn groups(groups: &Value) -> String {
+fn groups(row: &Value) -> String {
     let ids = |group: &Value| {
         let ids: Vec<String> = group.as_array().unwrap().iter().map(Value::to_string).collect();
         ids.join(",")
     };
-    format!("hard={}; easy={}", ids(&groups[0]), ids(&groups[1]))
+    format!("hard={}; easy={}", ids(&row["hard group"]), ids(&row["easy group"]))
 }
 
 #[test]
@@ -37,21 +37,26 @@ fn the_oracles_best_and_worst_assignments_come_out_of_a_fork() {
     let here = folder.path();
     for round in ["1", "2", "3"] {
         let found = json(here, "oracle", &["--round", round, "--metric", "energy_per_rescuee", "--quiet"]);
-        let answer = &found["answers"][0];
-        let ranking = answer["ranking"].as_array().unwrap();
-        assert_eq!((ranking.len(), answer["is_exact"].as_bool()), (8, Some(true)));
+        let ranking = found["tables"]["ranking"].as_array().unwrap();
+        let said = found["sentences"][1].as_str().unwrap();
+        assert!(ranking.len() == 8 && said.ends_with("all 8 assignments that the quotas allow"), "{said}");
         for ranked in [&ranking[0], &ranking[7]] {
-            let assign = groups(&ranked["groups"]);
+            let assign = groups(ranked);
             let fork = json(here, "fork", &["--round", round, "--assign", &assign]);
-            assert_eq!(fork["otherwise"]["round"], ranked["outcome"], "round {round}, {assign}");
+            let outcome = &fork["tables"]["trials"][1]["round"];
+            assert_eq!(outcome["duration_s"], ranked["time s"], "round {round}, {assign}");
+            let rescued = [0, 1].map(|task: usize| outcome["tasks"][task]["rescued"].clone());
+            assert_eq!(Value::from(rescued.to_vec()), ranked["rescued"], "round {round}, {assign}");
         }
-        let values: Vec<f64> = ranking.iter().map(|ranked| ranked["value"].as_f64().unwrap()).collect();
+        let values: Vec<f64> =
+            ranking.iter().map(|ranked| ranked["energy_per_rescuee"].as_f64().unwrap()).collect();
         assert!(values.is_sorted(), "a cost: less is better: {values:?}");
-        let rne =
-            answer["policies"].as_array().unwrap().iter().find(|choice| choice["policy"] == "RNE").unwrap();
-        let regret = rne["value"].as_f64().unwrap() - values[0];
+        let policies = found["tables"]["policies"].as_array().unwrap();
+        let rne = policies.iter().find(|choice| choice["policy"] == "RNE").unwrap();
+        let regret = rne["energy_per_rescuee"].as_f64().unwrap() - values[0];
         assert!((rne["regret"].as_f64().unwrap() - regret).abs() < 1e-12);
-        let better = values.iter().filter(|value| **value < rne["value"].as_f64().unwrap()).count();
+        let better =
+            values.iter().filter(|value| **value < rne["energy_per_rescuee"].as_f64().unwrap()).count();
         assert_eq!(rne["rank"], better + 1);
     }
 }
@@ -90,11 +95,15 @@ fn a_forged_digit_in_the_oracles_log_is_refused_and_nobody_else_cuts_it() {
     refused(here, 2, &[&["why"], &SMALL[..]].concat(), &[&line]);
     // The end of a killed process is cut off by the next writer, and left alone by a reader.
     std::fs::write(&cache, &text[..text.len() - 9]).unwrap();
-    assert_eq!(json(here, "why", &[])["oracle"], serde_json::json!([]), "an assignment is missing");
+    assert_eq!(
+        json(here, "why", &[])["tables"]["account"][0]["oracle"],
+        serde_json::json!([]),
+        "an assignment is missing"
+    );
     assert_eq!(std::fs::read_to_string(&cache).unwrap(), text[..text.len() - 9]);
     json(here, "oracle", &["--quiet"]);
     assert_eq!(std::fs::read_to_string(&cache).unwrap(), text);
-    assert_eq!(json(here, "why", &[])["oracle"].as_array().unwrap().len(), 2);
+    assert_eq!(json(here, "why", &[])["tables"]["account"][0]["oracle"].as_array().unwrap().len(), 2);
 }
 
 #[test]
@@ -117,11 +126,12 @@ fn a_fork_without_a_change_is_the_same_trial_and_one_with_a_change_is_not() {
     let here = folder.path();
     let fork = json(here, "fork", &["--round", "2", "--instead", "RNE", "--onwards"]);
     let run = json(here, "run", &["--policy", "RNE"]);
-    assert_eq!(fork["as_it_was"]["state_hash"], run["state_hash"]);
-    assert_eq!(fork["otherwise"], fork["as_it_was"]);
+    let trials = &fork["tables"]["trials"];
+    assert_eq!((&trials[0]["state_hash"], &trials[1]), (&run["state_hash"], &trials[0]));
     let fork = json(here, "fork", &["--round", "1", "--instead", "HP_DIS"]);
-    assert_ne!(fork["otherwise"]["state_hash"], run["state_hash"]);
-    assert_ne!(fork["otherwise"]["assignment"], fork["as_it_was"]["assignment"]);
+    let trials = &fork["tables"]["trials"];
+    assert_ne!(trials[1]["state_hash"], run["state_hash"]);
+    assert_ne!(trials[1]["assignment"], trials[0]["assignment"]);
 }
 
 #[test]
@@ -133,8 +143,9 @@ fn the_oracle_as_a_policy_decides_as_the_oracle_says() {
     for (place, decision) in run["decisions"].as_array().unwrap().iter().take(2).enumerate() {
         let round = (place + 1).to_string();
         let rest = ["--policy", policy, "--round", &round, "--metric", "energy_per_rescuee", "--quiet"];
-        let best = &json(here, "oracle", &rest)["answers"][0]["ranking"][0]["groups"];
-        assert_eq!(&decision["decision"]["assignment"]["groups"], best, "round {round}");
+        let best = &json(here, "oracle", &rest)["tables"]["ranking"][0];
+        let best = [&best["hard group"], &best["easy group"]].map(Value::clone);
+        assert_eq!(decision["decision"]["assignment"]["groups"], Value::from(best.to_vec()), "round {round}");
     }
     refused(
         here,
@@ -152,6 +163,7 @@ fn the_oracle_as_a_policy_decides_as_the_oracle_says() {
 fn why_is_what_the_recorded_needs_say() {
     let folder = place();
     let told = json(folder.path(), "why", &["--round", "1", "--robot", "0"]);
+    let told = &told["tables"]["account"][0];
     let members = told["question"]["members"].as_array().unwrap();
     let needs = |member: &Value| -> Vec<f64> {
         member["needs"].as_array().unwrap().iter().map(|need| need.as_f64().unwrap()).collect()
@@ -242,7 +254,7 @@ fn a_study_of_regret_goes_on_and_its_tables_agree_with_each_other() {
     }
     let means = by_trial.values().map(|regrets| regrets.iter().sum::<f64>() / regrets.len() as f64);
     let mean = means.sum::<f64>() / by_trial.len() as f64;
-    let dis = &told["analyses"][0]["policies"][1];
+    let dis = &told["tables"]["analyses"][0]["policies"][1];
     assert_eq!(dis["policy"], "DIS");
     assert!((dis["regret"]["value"].as_f64().unwrap() - mean).abs() < 1e-9);
     refused(

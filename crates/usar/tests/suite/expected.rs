@@ -37,8 +37,12 @@ fn expectations_hold_fail_or_stay_undecided() {
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&output.stderr).contains("3 of 3 expectations do not hold"));
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let verdicts: Vec<&str> =
-        told["expectations"].as_array().unwrap().iter().map(|one| one["verdict"].as_str().unwrap()).collect();
+    let verdicts: Vec<&str> = told["tables"]["expectations"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["verdict"].as_str().unwrap())
+        .collect();
     assert_eq!(verdicts, ["fails", "fails", "undecided"], "twenty trials cannot show 90 % at 99.9 %");
     let junit = std::fs::read_to_string(here.join("all.xml")).unwrap();
     assert!(junit.matches("<failure").count() == 3 && junit.contains("UNDECIDED: observed 1"), "{junit}");
@@ -51,7 +55,7 @@ fn few_trials_are_run_where_few_decide() {
     write(here, "\"time > 30 in 90 % of seeds\"");
     let output = usar(here, "test expected.ron --max-trials 100000 --quiet --json");
     let told: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(told["expectations"][0]["n"], 20, "the first look decides");
+    assert_eq!(told["tables"]["expectations"][0]["n"], 20, "the first look decides");
 }
 
 #[test]

@@ -312,7 +312,7 @@ fn a_shard_has_whole_pairs_and_calls_itself_complete() {
     assert_eq!(names, expected, "the other tables are made when shards are merged");
     let said = succeeds(&usar(here, "compare results/paper-2-of-2 --metric distance --json"));
     let compared: Value = serde_json::from_str(&said).unwrap();
-    let first = &compared["comparisons"][0];
+    let first = &compared["tables"]["comparisons"][0];
     assert_eq!((&first["n"], &first["missing"]), (&2.into(), &0.into()), "seeds 2 and 4, whole");
     succeeds(&usar(here, "report results/paper-2-of-2"));
     succeeds(&usar(here, "verify results/paper-2-of-2"));

@@ -30,7 +30,7 @@ fn the_room_of_a_world_is_that_of_its_trials() {
     assert!(text.contains("rescuees.total of 8 trials, paired by seed; minus RANDOM"), "{text}");
     let json = succeeds(&usar(folder.path(), &format!("{command} --json")[..]));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let rows = json["worlds"][0]["policies"].as_array().unwrap();
+    let rows = json["tables"]["worlds"][0]["policies"].as_array().unwrap();
     let policies: Vec<&str> = rows.iter().map(|row| row["policy"].as_str().unwrap()).collect();
     assert_eq!(policies, ["RNE", "DIS", "RANDOM", "best", "worst"]);
     let mean = |policy: usize| rows[policy]["mean"].as_f64().unwrap();
@@ -89,7 +89,7 @@ fn a_policy_behind_an_estimator_answers_a_question_with_evidence() {
     std::fs::write(here.join("lie.ron"), small.replacen("tasks: [", lie, 1)).unwrap();
     let why = succeeds(&usar(here, "why lie.ron --policy HP_DIS --seed 1 --json"));
     let why: serde_json::Value = serde_json::from_str(&why).unwrap();
-    std::fs::write(here.join("question.json"), why["question"].to_string()).unwrap();
+    std::fs::write(here.join("question.json"), why["tables"]["account"][0]["question"].to_string()).unwrap();
     let counted = |policy: &str| -> f64 {
         let answer = succeeds(&usar(here, &["trust", "question.json", "--policy", policy, "--json"]));
         let decision: serde_json::Value = serde_json::from_str(&answer).unwrap();
@@ -128,9 +128,9 @@ fn a_study_of_deceit_tells_what_lies_cost_and_how_well_estimators_judge() {
     }
     let json = succeeds(&usar(here, "study deceit lied.ron --quiet --json"));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!(json["liars"], serde_json::json!([0, 2]));
+    let json = &json["tables"];
     let policies = json["policies"].as_array().unwrap();
-    let mean = |policy: usize, liars: usize| policies[policy]["means"][liars].as_f64().unwrap();
+    let mean = |policy: usize, place: usize| policies[policy][["0", "2"][place]].as_f64().unwrap();
     assert_eq!(policies.iter().map(|one| &one["policy"]).collect::<Vec<_>>(), ["HP_DIS", "sure"]);
     assert!((mean(1, 0) - mean(1, 1)).abs() < 1e-9, "who knows the truth hears no lie");
     assert!((mean(0, 0) - mean(1, 0)).abs() < 1e-9 && (mean(0, 1) - mean(1, 1)).abs() > 0.1, "{json}");
@@ -139,7 +139,7 @@ fn a_study_of_deceit_tells_what_lies_cost_and_how_well_estimators_judge() {
         (&"sure".into(), &0.0.into())
     );
     let judged = json["judgements"].as_array().unwrap();
-    let value = |row: usize, name: &str| judged[row]["values"][name].as_f64();
+    let value = |row: usize, name: &str| judged[row][name].as_f64();
     let rows: Vec<(&str, u64)> = judged
         .iter()
         .map(|row| (row["estimator"].as_str().unwrap(), row["liars"].as_u64().unwrap()))
@@ -182,7 +182,8 @@ fn policies_are_judged_by_the_outcomes_of_all_assignments() {
     assert!(text.contains("rescuees per minute total (1/min): 4 trials that DIS decided"), "{text}");
     let json = succeeds(&usar(here, &format!("{command} --json")[..]));
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let row = |policy: &str| json["policies"].as_array().unwrap().iter().find(|row| row["policy"] == policy);
+    let rows = json["tables"]["policies"].as_array().unwrap();
+    let row = |policy: &str| rows.iter().find(|row| row["policy"] == policy);
     let mean =
         |policy: &str, liars: usize| row(policy).unwrap()["differences"][liars]["mean"].as_f64().unwrap();
     assert!((mean("sure", 0) - mean("sure", 1)).abs() < 1e-12, "{json}");

@@ -412,7 +412,7 @@ fn answers_against_the_rules_are_counted_and_shown() {
     let output = usar(here, &["check", "--policy", MINE, "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let checked: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    let breaches = checked["breaches"].as_array().unwrap();
+    let breaches = checked["tables"]["policies"][0]["breaches"].as_array().unwrap();
     assert!(breaches.len() > 300 && breaches.len() < 1_000, "{}", breaches.len());
     assert!(breaches[0]["question"]["members"].as_array().unwrap().len() > 6);
     let message = breaches[0]["message"].as_str().unwrap();

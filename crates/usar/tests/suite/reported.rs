@@ -163,7 +163,7 @@ fn the_reports_numbers_are_those_of_the_trials() {
         here,
         &["trust", "--weights", &weights, "--trustor", &from, "--trustee", &to, "--json"],
     ));
-    let rne = serde_json::from_str::<Value>(&said).unwrap()["rne"].as_f64().unwrap();
+    let rne = serde_json::from_str::<Value>(&said).unwrap()["tables"]["pair"][0]["rne"].as_f64().unwrap();
     let shown = &rows(&results.join("plots"), "trust.csv")[1];
     assert_eq!((&shown[0], &shown[1]), ("0", "1"));
     assert!((shown[2].parse::<f64>().unwrap() - rne).abs() < 1e-12);

@@ -27,7 +27,7 @@ fn table(text: &str) -> (tempfile::TempDir, String) {
 
 fn matrix(text: &str, arguments: &[&str]) -> Value {
     let (_folder, path) = table(text);
-    json(&[&["trust", path.as_str(), "--json"], arguments].concat())
+    json(&[&["trust", path.as_str(), "--json"], arguments].concat())["tables"].clone()
 }
 
 #[track_caller]
@@ -41,23 +41,23 @@ const LESS: [&str; 2] = ["--less-is-better", "damage=100"];
 #[test]
 fn a_table_gives_the_trust_of_all_pairs() {
     let all = matrix(SPOTS, &LESS);
-    assert_eq!(all["robots"], value!(["spot-1", "spot-2", "spot-3"]));
-    assert_eq!((&all["measure"], &all["unit"]), (&value!("RNE"), &value!("nats")));
-    assert_eq!(all["weights"], value!([1.0 / 20.0, 1.0 / 80.0]));
     let rne = &all["distrust"];
+    let robots = [0, 1, 2].map(|place: usize| rne[place]["from \\ to"].clone());
+    assert_eq!(robots, ["spot-1", "spot-2", "spot-3"].map(|name| value!(name)));
+    assert_eq!(all["needs"][1], value!({"need": "damage", "weight": 1.0 / 80.0}));
     // 1/3 ln((1/3) / (2/3)) + 2/3 ln((2/3) / (1/3)), and so on.
-    close(&rne[0][1], 2_f64.ln() / 3.0);
-    close(&rne[1][0], 2_f64.ln() / 3.0);
-    close(&rne[0][2], (2.0_f64 / 3.0).ln() / 3.0 + (4.0_f64 / 3.0).ln() * 2.0 / 3.0);
-    close(&rne[2][0], (9.0_f64 / 8.0).ln() / 2.0);
-    close(&rne[2][2], 0.0);
-    close(&all["trust"][0][1], 2_f64.powf(-1.0 / 3.0));
+    close(&rne[0]["spot-2"], 2_f64.ln() / 3.0);
+    close(&rne[1]["spot-1"], 2_f64.ln() / 3.0);
+    close(&rne[0]["spot-3"], (2.0_f64 / 3.0).ln() / 3.0 + (4.0_f64 / 3.0).ln() * 2.0 / 3.0);
+    close(&rne[2]["spot-1"], (9.0_f64 / 8.0).ln() / 2.0);
+    close(&rne[2]["spot-3"], 0.0);
+    close(&all["trust"][0]["spot-2"], 2_f64.powf(-1.0 / 3.0));
     // With the weights 2 and 1 the shares of the first two are (1/2, 1/2) and (4/5, 1/5).
     let weighted = matrix(SPOTS, &[&LESS[..], &["--weights", "2,1"]].concat());
-    close(&weighted["distrust"][0][1], (25.0_f64 / 16.0).ln() / 2.0);
+    close(&weighted["distrust"][0]["spot-2"], (25.0_f64 / 16.0).ln() / 2.0);
     // As they are, the needs of the first two are (10, 80) and (20, 40).
     let as_is = matrix(SPOTS, &[&LESS[..], &["--measure", "RNE(scale: false)"]].concat());
-    close(&as_is["distrust"][0][1], (1.0_f64 / 3.0).ln() / 9.0 + (4.0_f64 / 3.0).ln() * 8.0 / 9.0);
+    close(&as_is["distrust"][0]["spot-2"], (1.0_f64 / 3.0).ln() / 9.0 + (4.0_f64 / 3.0).ln() * 8.0 / 9.0);
 }
 
 #[test]
@@ -65,8 +65,8 @@ fn no_trust_at_all_is_null_and_a_word() {
     // The second robot is at the worst.
     let text = "id,hp,damage\na,10,50\nb,10,100\n";
     let all = matrix(text, &LESS);
-    assert_eq!((&all["distrust"][0][1], &all["trust"][0][1]), (&Value::Null, &value!(0.0)));
-    close(&all["distrust"][1][0], 2_f64.ln());
+    assert_eq!((&all["distrust"][0]["b"], &all["trust"][0]["b"]), (&Value::Null, &value!(0.0)));
+    close(&all["distrust"][1]["a"], 2_f64.ln());
     let (folder, path) = table(text);
     let csv = succeeds(&usar(folder.path(), &[&["trust", &path, "--format", "csv"], &LESS[..]].concat()));
     assert_eq!(csv.lines().take(2).collect::<Vec<_>>(), ["from \\ to,a,b", "a,0,infinite"]);
@@ -104,16 +104,16 @@ fn the_picture_is_of_the_named_kind_and_replaces_nothing() {
 #[test]
 fn one_robot_and_two_hundred_are_a_team() {
     let one = matrix("id,hp\nonly,3\n", &[]);
-    assert_eq!((&one["robots"], &one["distrust"]), (&value!(["only"]), &value!([[0.0]])));
+    assert_eq!(one["distrust"], value!([{"from \\ to": "only", "only": 0.0}]));
     let row = |i: usize| format!("robot-{i};{};{},5\n", i % 7 + 1, i % 11);
     let many = format!("id;hp;v\n{}", (0..200).map(row).collect::<String>());
     let (folder, path) = table(&many);
     let told = succeeds(&usar(folder.path(), &["trust", &path, "--out", "many.svg"]));
     assert!(told.contains("trusts most") && told.lines().all(|line| line.chars().count() < 110), "{told}");
     let groups = matrix(&many, &["--policy", "RNE"]);
-    let size = |task: usize| groups["groups"][task]["robots"].as_array().unwrap().len();
+    let size = |task: usize| groups["groups"][task]["robot"].as_array().unwrap().len();
     assert_eq!((size(0), size(1)), (100, 100));
-    let decision: teaming::Decision = serde_json::from_value(groups["decision"].clone()).unwrap();
+    let decision: teaming::Decision = serde_json::from_value(groups["decision"][0].clone()).unwrap();
     assert!(!decision.proven_optimal);
     let told = succeeds(&usar(folder.path(), &["trust", &path, "--policy", "RNE"]));
     assert!(told.contains("not proven optimal"), "{told}");
@@ -129,24 +129,27 @@ fn a_policy_groups_a_table_by_the_names_of_its_robots() {
     for policy in ["RNE", "ENG", "HP_DIS", "DIS", "RANDOM"] {
         let tasks = ["--task", "near,1,73,51", "--task", "far,2,15,64"];
         let answer = json(&[&["trust", &path, "--policy", policy, "--json"], &tasks[..]].concat());
-        assert!(serde_json::from_value::<teaming::Decision>(answer["decision"].clone()).is_ok(), "{answer}");
+        let (answer, decision) = (&answer["tables"]["groups"], &answer["tables"]["decision"][0]);
+        assert!(serde_json::from_value::<teaming::Decision>(decision.clone()).is_ok(), "{answer}");
         let ids = |task: usize| {
-            let group = answer["groups"][task]["robots"].as_array().unwrap();
-            group.iter().map(|id| id.as_str().unwrap().to_owned()).collect::<Vec<_>>()
+            let of = |role: &str| answer[task][role].as_array().unwrap().iter();
+            let ids = ["carrier", "supplier", "observer"].into_iter().flat_map(of);
+            ids.map(|id| id.as_str().unwrap().to_owned()).collect::<Vec<_>>()
         };
         let mut all = [ids(0), ids(1)].concat();
         all.sort_unstable();
         assert_eq!(all, ["1", "2", "3", "4", "5", "6"], "{policy}");
         if policy == "ENG" {
             assert_eq!(ids(1), ["1", "3", "5"]);
-            assert_eq!(answer["decision"]["assignment"]["groups"][1], value!([1, 3, 5]));
+            assert_eq!(decision["assignment"]["groups"][1], value!([1, 3, 5]));
         }
-        assert_eq!(answer["decision"]["score"].is_null(), policy != "RNE", "{policy}");
+        assert_eq!(decision["score"].is_null(), policy != "RNE", "{policy}");
     }
     // The robots with more energy take the harder task.
     let texts = TABLE.replace("\n1,", "\nspot-2,").replace("\n5,", "\nhusky,");
     let answer = matrix(&texts, &["--policy", "ENG"]);
-    assert_eq!(answer["groups"][0], value!({"task": "first", "robots": ["spot-2", "3", "husky"]}));
+    let first = value!({"task": "first", "carrier": ["spot-2"], "supplier": ["3"], "observer": ["husky"]});
+    assert_eq!(answer["groups"][0], first);
     let told = succeeds(&usar(folder.path(), &["trust", &path, "--policy", "ENG", "--format", "csv"]));
     assert_eq!(told, "task,carrier,supplier,observer\nfirst,1,3,5\nsecond,2,4,6\n");
 }
@@ -261,8 +264,8 @@ fn a_question_in_json_is_answered_in_json() {
     assert_eq!(answer["account"]["Ranking"]["roles"][0][0]["id"], 2);
     // Without a policy, its trust: of one need, shares are the same.
     let matrix = json(&["trust", path, "--json"]);
-    assert_eq!(matrix["robots"], serde_json::json!(["2", "4", "7"]));
-    assert_eq!(matrix["distrust"], serde_json::json!([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]));
+    let row = serde_json::json!({"from \\ to": "7", "2": 0.0, "4": 0.0, "7": 0.0});
+    assert_eq!(matrix["tables"]["distrust"][2], row);
     refused(&["trust", path, "--weights", "1"], "--weights and --less-is-better are for tables");
     std::fs::write(path, question.replace("\"round\"", "\"rounds\"")).unwrap();
     refused(&["trust", path], "question.json: not the JSON of a question: unknown field `rounds`");

@@ -93,7 +93,7 @@ impl Arguments {
         if let Some(place) = &self.out {
             self.write(place, &problems, &solved, &policies)?;
         }
-        summary::told(&solved, self.shown.is_json())
+        Ok(summary::told(&solved))
     }
 
     fn problems(&self) -> Result<Vec<Problem>, Failure> {

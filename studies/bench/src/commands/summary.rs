@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use serde::Serialize;
-use serde_json::json;
 use statistics::Moments;
 use statistics::bootstrap::quantile;
 
@@ -40,7 +38,6 @@ impl Solved {
 }
 
 /// A method over all problems.
-#[derive(Serialize)]
 struct Row {
     method: String,
     /// Gaps in percent.
@@ -76,13 +73,10 @@ impl Row {
     }
 }
 
-/// The table, or JSON.
-pub(super) fn told(solved: &[Solved], is_json: bool) -> Result<Report, Failure> {
+/// The table.
+pub(super) fn told(solved: &[Solved]) -> Report {
     let exact = solved.iter().filter(|solved| solved.optimum.is_some()).count();
     let rows: Vec<Row> = (0..solved[0].methods.len()).map(|at| Row::of(solved, at)).collect();
-    if is_json {
-        return Report::json(&json!({ "problems": solved.len(), "exact": exact, "rows": rows }));
-    }
     let count = counted(solved.len(), "problem");
     let first = format!("{count}, {exact} of them solved exactly; gap to the least makespan in percent");
     let header = ["method", "mean", "median", "95th percentile", "worst", "optimal (%)", "ms a decision"];
@@ -93,8 +87,8 @@ pub(super) fn told(solved: &[Solved], is_json: bool) -> Result<Report, Failure> 
         labelled(&row.method, gaps.into_iter().chain([time]))
     };
     let mut out = Report::from(first);
-    out.show(Table::of(header, rows.iter().map(row)));
-    Ok(out)
+    out.show("methods", Table::of(header, rows.iter().map(row)));
+    out
 }
 
 /// All makespans as CSV: a row for each problem and method.

@@ -190,7 +190,7 @@ impl Arguments {
         if log.entries.first().is_some_and(|first| first.values == best.values) {
             out.say("no candidate is nearer to the data than the start");
         }
-        out.show(fit_table(rows));
+        out.show("fit", fit_table(rows));
         let (trials, first) = (calibration.trials, calibration.first_seed);
         let last = first + u64::from(trials) - 1;
         out.say(format!(

@@ -86,8 +86,8 @@ impl Arguments {
         let page = write_page(&self.out, &judged, &sections, &program)?;
         let mut out = Report::default();
         for Section { title, table, note } in sections {
-            out.say(title);
-            table.into_iter().for_each(|table| out.show(table));
+            out.say(&title);
+            table.into_iter().for_each(|table| out.show(&title, table));
             out.say(if note.is_empty() { note } else { note + "\n" });
         }
         out.print()?;

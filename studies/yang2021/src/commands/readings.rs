@@ -54,7 +54,7 @@ impl Arguments {
         let rows = single(&trials, default, &readings, &rounds)?;
         let pairs = trials.numbers.len();
         let mut out = Report::from(format!("Each reading by itself against the default, over {pairs} pairs"));
-        out.show(readings_table(&rows, &folder.experiment().metrics));
+        out.show("readings", readings_table(&rows, &folder.experiment().metrics));
         out.say(format!(
             "regrouped: share of the {} rounds of the default's trials that the reading would group \
              otherwise, and of those that it would split otherwise\n\
@@ -64,7 +64,11 @@ impl Arguments {
         ));
         let averaged = averaged(&trials, &readings);
         if !averaged.is_empty() {
-            out.titled("Each reading averaged over all combinations of the others, against the default of its option", averaged_table(&averaged, &folder.experiment().metrics));
+            out.say(
+                "Each reading averaged over all combinations of the others, against the default of its \
+                 option",
+            );
+            out.show("averaged", averaged_table(&averaged, &folder.experiment().metrics));
             out.say("");
         }
         let distinct = trials.distinct(&readings);
@@ -76,7 +80,7 @@ impl Arguments {
                 distinct.len(),
                 readings.len()
             ));
-            out.show(rivals_table(&rivals));
+            out.show("rivals", rivals_table(&rivals));
             out.say(
                 "95 % paired t intervals; corrected: at 95 % shared by these readings (Bonferroni); all: \
                  above, or below, each of the others; least and\n\

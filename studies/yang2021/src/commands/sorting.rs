@@ -97,16 +97,14 @@ fn told(
         "In which share of the rounds a policy's split is the one that sorting each role gives (in brackets: \
          by chance)",
     );
-    out.show(likeness_table(agreements));
+    out.show("sorting", likeness_table(agreements));
     out.say(format!(
         "split: in all roles, whichever half takes which task; higher: the group of the {hardest} task has \
          the higher mean of that level. Ties count as sorted,\n\
          by chance too\n"
     ));
-    out.titled(
-        "Mean levels of the groups when a round begins, in percent",
-        levels_table(levels, &task_names(scenario)),
-    );
+    out.say("Mean levels of the groups when a round begins, in percent");
+    out.show("levels", levels_table(levels, &task_names(scenario)));
     out.say("n: rounds with two groups\n");
     blind.iter().for_each(|blind| tell_blindness(&mut out, blind));
     out

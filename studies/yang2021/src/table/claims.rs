@@ -1,8 +1,8 @@
 //! Tables of the paper's claims.
 
 use experiments::comparison::{digits, short};
-use reports::table::{between, number};
-use tables::{Entry, Table, labelled, or_dash, right, right_or_dash};
+use reports::table::{between, number, range};
+use tables::{Entry, Table, labelled, or_dash, right, right_or_dash, valued};
 
 use crate::claims::{CLAIMS, Example, Judged, Shares, Verdict, verdicts_over_worlds};
 use crate::scenarios::{PAPERS_TRIALS, Standing};
@@ -21,8 +21,8 @@ pub(crate) fn claims_table(judged: &Judged) -> Table {
                 "".into(),
                 "".into(),
                 number(all.difference),
-                right(between(all.interval)),
-                right(between(all.shared_interval)),
+                range(all.interval),
+                range(all.shared_interval),
                 right(all.differences.len()),
                 right(format!("{} ({})", or_dash(few.difference, short), between(few.interval))),
             ]);
@@ -37,8 +37,8 @@ pub(crate) fn examples_table(examples: &[Example]) -> Table {
         [
             Entry::from(example.name),
             example.words.into(),
-            right(digits(example.trusting, 4)),
-            right(digits(example.doubting, 4)),
+            valued(example.trusting, digits(example.trusting, 4)),
+            valued(example.doubting, digits(example.doubting, 4)),
             example.verdict.words().into(),
         ]
     };
@@ -53,7 +53,7 @@ pub(crate) fn power_table(judged: &Judged) -> Option<Table> {
         "claim,leans to,pairs for 80 %,of 10 pairs: holds,does not,undecided,difference,least found by 10"
             .split(','),
     );
-    let share = |share: f64| right(format!("{:.0} %", 100.0 * share));
+    let share = |share: f64| valued(share, format!("{:.0} %", 100.0 * share));
     if judged.powers.iter().all(Option::is_none) {
         return None;
     }

@@ -2,13 +2,14 @@
 
 use experiments::comparison::{digits, short};
 use experiments::metric::Catalogue;
-use tables::{Entry, Table, labelled, right, right_or_dash};
+use tables::{Entry, Table, labelled, right, right_or_dash, valued};
 
 use crate::readings::{Difference, ReadingRow, RivalRow, shown};
 
 fn differences(differences: &[Option<Difference>]) -> impl Iterator<Item = Entry> + '_ {
     differences.iter().map(|difference| {
-        right_or_dash(difference.as_ref(), |d| format!("{} ± {}", signed(d.mean), digits(d.half, 2)))
+        let pair = difference.as_ref().map(|difference| (difference.mean, difference.half));
+        right_or_dash(pair, |(mean, half)| format!("{} ± {}", signed(mean), digits(half, 2)))
     })
 }
 
@@ -25,7 +26,8 @@ fn names(metrics: &Catalogue) -> impl Iterator<Item = &str> {
 pub fn readings_table(rows: &[ReadingRow], metrics: &Catalogue) -> Table {
     let row = |row: &ReadingRow| {
         let [grouped, split] = row.regrouped;
-        let shares = [grouped, split, row.trials].map(|share| right(format!("{:.1} %", 100.0 * share)));
+        let shares =
+            [grouped, split, row.trials].map(|share| valued(share, format!("{:.1} %", 100.0 * share)));
         labelled(&row.reading, shares.into_iter().chain(differences(&row.differences)))
     };
     let header = ["reading", "regrouped", "split otherwise", "trials"].into_iter().chain(names(metrics));

@@ -39,7 +39,7 @@ struct Breach {
 }
 
 /// Asks a policy random questions, and tells what is wrong with its answers and how long they take.
-pub(super) fn check(text: &str, registry: &Registry, is_json: bool) -> Result<Report, Failure> {
+pub(super) fn check(text: &str, registry: &Registry) -> Result<Report, Failure> {
     let spec = parse_policy("--policy", text, registry)?;
     if !spec.is_of_question() {
         refuse!(
@@ -80,7 +80,9 @@ pub(super) fn check(text: &str, registry: &Registry, is_json: bool) -> Result<Re
     let [median_ms, p95_ms, longest_ms] = [0.5, 0.95, 1.0].map(part);
     let (policy, questions) = (spec.label.clone(), QUESTIONS);
     let checked = Checked { policy, questions, breaches, differing, start_s, median_ms, p95_ms, longest_ms };
-    if is_json { Report::json(&checked)? } else { told(&checked) }.print()?;
+    let mut out = told(&checked);
+    out.rows("policies", [&checked])?;
+    out.print()?;
     verdict(&checked)
 }
 

@@ -1,58 +1,11 @@
 //! The output of `usar oracle`.
 
-use experiments::oracle::{Coverage, Evaluation, Objective, Outcome, Standing, Survey};
-use serde_json::{Value, json};
+use experiments::oracle::{Evaluation, Objective, Outcome, Standing, Survey};
 use teaming::Assignment;
 
 use super::{Answer, Asked, coverage_in_words};
-use crate::commands::fork::ids;
+use crate::commands::fork::{group, ids};
 use crate::prelude::*;
-
-pub(super) fn json(asked: &Asked, answers: &[Answer]) -> Result<Report, Failure> {
-    Report::json(&json!({
-        "scenario": asked.trial.scenario.name,
-        "seed": asked.trial.seed,
-        "base": asked.trial.spec.label,
-        "round": asked.question.round,
-        "time_s": asked.time_s,
-        "metric": asked.objective.name(),
-        "less_is_better": asked.objective.is_cost(),
-        "answers": answers.iter().map(|answer| answer_json(asked, answer)).collect::<Vec<Value>>(),
-    }))
-}
-
-/// The choices of the policies, and the played assignments, the best first.
-fn answer_json(asked: &Asked, Answer { then, survey }: &Answer) -> Value {
-    let objective = &asked.objective;
-    let range = survey.range(objective);
-    let choice = |(policy, choice): &(String, Assignment)| {
-        let standing = survey.standing(objective, choice);
-        json!({
-            "policy": policy,
-            "groups": choice.groups,
-            "rank": standing.map(|standing| standing.rank),
-            "value": standing.map(|standing| standing.value),
-            "regret": standing.map(|standing| standing.regret),
-        })
-    };
-    let ranked = |Evaluation { assignment, outcome }: &Evaluation| {
-        let rank = survey.standing(objective, assignment).map(|standing| standing.rank);
-        let value = objective.value(outcome);
-        json!({"rank": rank, "value": value, "groups": assignment.groups, "outcome": outcome})
-    };
-    json!({
-        // The policy that decides the rest of the trial; null for the end of the round.
-        "then": then.as_ref().map(|then| &then.label),
-        // Whether all assignments were played. If so, the best of them is the best that exists.
-        "is_exact": survey.coverage == Coverage::All,
-        "played": survey.evaluations.len(),
-        "best": range.map(|[best, _]| best),
-        "mean": survey.mean(objective),
-        "worst": range.map(|[_, worst]| worst),
-        "policies": asked.choices.iter().map(choice).collect::<Vec<Value>>(),
-        "ranking": survey.ranked(objective).into_iter().map(ranked).collect::<Vec<Value>>(),
-    })
-}
 
 pub(super) fn text(asked: &Asked, answers: &[Answer], top: usize) -> Report {
     let mut out = Report::from(format!(
@@ -87,8 +40,9 @@ fn tell_answer(out: &mut Report, asked: &Asked, Answer { then, survey }: &Answer
              rescue_rate or --then POLICY may.",
         );
     }
-    out.show(ranking(asked, survey, top));
-    out.show(choices(asked, survey));
+    let of = then.as_ref().map_or(String::new(), |then| format!(", then {}", then.label));
+    out.show(format!("ranking{of}"), ranking(asked, survey, top));
+    out.show(format!("policies{of}"), choices(asked, survey));
 }
 
 /// A number for a table: whole, or with two decimals.
@@ -100,11 +54,11 @@ fn short(value: f64) -> String {
 fn grouped<'a, const N: usize>(
     asked: &Asked,
     columns: [&str; N],
-    rows: impl Iterator<Item = ([String; N], &'a Assignment)>,
+    rows: impl Iterator<Item = ([Entry; N], &'a Assignment)>,
 ) -> Table {
     let tasks = asked.question.tasks.iter().map(|task| format!("{} group", task.name));
-    let row = |(cells, choice): ([String; N], &'a Assignment)| {
-        cells.into_iter().chain(choice.groups.iter().map(|group| ids(group))).map(right)
+    let row = |(cells, choice): ([Entry; N], &'a Assignment)| {
+        cells.into_iter().chain(choice.groups.iter().map(|ids| group(ids)))
     };
     Table::of(columns.map(str::to_owned).into_iter().chain(tasks), rows.map(row))
 }
@@ -115,33 +69,33 @@ fn ranking(asked: &Asked, survey: &Survey, top: usize) -> Table {
     let row = |place: usize, found: &Evaluation| {
         let standing = survey.standing(&asked.objective, &found.assignment);
         let rank = standing.map_or(place + 1, |standing| standing.rank);
-        let rank = if place == last && rank > 1 { format!("{rank} (the worst)") } else { rank.to_string() };
+        let worst = if place == last && rank > 1 { " (the worst)" } else { "" };
         let outcome = &found.outcome;
-        let value = or_dash(asked.objective.value(outcome), short);
-        [rank, value, rescued(outcome), tenths(outcome.total().energy), tenths(outcome.duration_s)]
+        let value = right_or_dash(asked.objective.value(outcome), short);
+        let tenths = |value: f64| valued(value, format!("{value:.1}"));
+        let (energy, time) = (tenths(outcome.total().energy), tenths(outcome.duration_s));
+        [valued(rank, format!("{rank}{worst}")), value, rescued(outcome), energy, time]
     };
     let shown = ranked.iter().enumerate().filter(|(place, _)| *place < top || *place == last);
     let columns = ["rank", asked.objective.name(), "rescued", "energy", "time s"];
     grouped(asked, columns, shown.map(|(place, found)| (row(place, found), &found.assignment)))
 }
 
-fn tenths(value: f64) -> String {
-    format!("{value:.1}")
-}
-
 /// The number of all rescuees, and in brackets the number for each task.
-fn rescued(outcome: &Outcome) -> String {
-    let each: Vec<String> = outcome.tasks.iter().map(|task| task.rescued.to_string()).collect();
-    format!("{} ({})", outcome.total().rescued, each.join(" + "))
+fn rescued(outcome: &Outcome) -> Entry {
+    let each: Vec<u32> = outcome.tasks.iter().map(|task| task.rescued).collect();
+    let words = each.iter().map(u32::to_string).collect::<Vec<_>>().join(" + ");
+    valued(each, format!("{} ({words})", outcome.total().rescued))
 }
 
 fn choices(asked: &Asked, survey: &Survey) -> Table {
     let count = survey.evaluations.len();
     let row = |(policy, choice): &(String, Assignment)| match survey.standing(&asked.objective, choice) {
         Some(Standing { rank, regret, value }) => {
-            [policy.clone(), format!("{rank} of {count}"), short(regret), short(value)]
+            let rank = valued(rank, format!("{rank} of {count}"));
+            [right(policy), rank, valued(regret, short(regret)), valued(value, short(value))]
         }
-        None => [policy, "-", "-", "-"].map(str::to_owned),
+        None => [policy, "-", "-", "-"].map(right),
     };
     let columns = ["policy", "rank", "regret", asked.objective.name()];
     grouped(asked, columns, asked.choices.iter().map(|choice| (row(choice), &choice.1)))

@@ -66,10 +66,9 @@ impl Arguments {
             (Of::Roles, _) => roles(&self.scenario()?),
             (Of::Metrics, _) => metrics(&self.scenario()?),
         };
-        if self.json.json {
-            return Report::json(&serde_json::json!({"listed": listed}));
-        }
-        Ok(Report::of(listed.iter().map(|one| format!("{}\t{}", one.name, one.about))))
+        let mut out = Report::of(listed.iter().map(|one| format!("{}\t{}", one.name, one.about)));
+        out.rows("listed", &listed)?;
+        Ok(out)
     }
 
     /// The scenario that was named, or the paper's.

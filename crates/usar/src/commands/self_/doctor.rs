@@ -125,7 +125,9 @@ impl Findings {
 impl Arguments {
     pub(crate) fn execute(&self, _: &Registry) -> Result<Report, Failure> {
         let findings = Findings::of(&self.out);
-        if self.json.json { Report::json(&findings)? } else { findings.told() }.print()?;
+        let mut out = findings.told();
+        out.rows("findings", [&findings])?;
+        out.print()?;
         match findings.results.trouble {
             None => Ok(Report::default()),
             Some(trouble) => Err(Failure::storage(format!("results cannot be written: {trouble}"))),

@@ -1,7 +1,5 @@
 //! `usar study deceit`: what lies cost each policy, how many liars it bears, and how well estimators judge.
 
-use std::collections::BTreeMap;
-
 use experiments::comparison::{digits, short};
 use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay};
 use experiments::experiment::Experiment;
@@ -10,8 +8,7 @@ use experiments::oracle::Objective;
 use experiments::regret::StudyFolder;
 use experiments::sweep::folder::Folder;
 use reports::deceit_figures;
-use reports::table::{between, mean, number};
-use serde_json::json;
+use reports::table::{mean, number, range};
 
 use crate::arguments::{ProgressArguments, Selection, ShownArguments};
 use crate::input::read_sweep;
@@ -73,7 +70,7 @@ impl Arguments {
             }
             let folder = read_sweep(&self.file, registry)?;
             Deceit::check(folder.experiment()).map_err(Failure::input_at(self.file.display()))?;
-            return self.told(&folder);
+            return Self::told(&folder);
         }
         let experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
         Deceit::check(&experiment).map_err(Failure::input_at(self.file.display()))?;
@@ -82,31 +79,28 @@ impl Arguments {
         }
         let named = Path::new("results").join(&experiment.name);
         let place = self.out.clone().unwrap_or(named);
-        self.told(&self.progress.finished(&place, experiment)?)
+        Self::told(&self.progress.finished(&place, experiment)?)
     }
 
-    fn told(&self, folder: &Folder) -> Result<Report, Failure> {
+    fn told(folder: &Folder) -> Result<Report, Failure> {
         let found = Deceit::of(folder)?;
         for (name, content) in deceit_figures(&found)? {
             NewFile::write(folder.path(), &name, &content)?;
-        }
-        if self.shown.is_json() {
-            return Report::json(&as_json(&found));
         }
         let trials = folder.experiment().trials;
         let margin = found.margin.map_or("0".to_owned(), short);
         let first =
             format!("{}: {trials} pairs by seed, minus {}; margin {margin}", found.metric, found.draw);
         let mut out = Report::from(first);
-        out.titled("\nMeans by number of liars, and how many liars a policy bears", borne(&found));
+        out.say("\nMeans by number of liars, and how many liars a policy bears");
+        out.show("policies", borne(&found));
         if !found.prices.is_empty() {
-            out.titled(
-                "\nThe price where nobody lies: a policy with its estimator minus the same without",
-                prices(&found),
-            );
+            out.say("\nThe price where nobody lies: a policy with its estimator minus the same without");
+            out.show("prices", prices(&found));
         }
         if !found.judgements.is_empty() {
-            out.titled("\nHow well estimators judge the same evidence", judgements(&found));
+            out.say("\nHow well estimators judge the same evidence");
+            out.show("judgements", judgements(&found));
         }
         Ok(out)
     }
@@ -118,10 +112,6 @@ impl Arguments {
             self.progress.work(study.folder.entries.len() * experiment.cases.len(), "trials", |bar| {
                 Replay::of(experiment, &study, &objective, &STOP, || bar.inc(1))
             })??;
-        if self.shown.is_json() {
-            return Report::json(&json!({"objective": found.objective, "liars": found.counts,
-                "trials": found.trials, "policies": found.worths}));
-        }
         let words = "minus the mean of all assignments, by number of liars";
         let first = format!("{}: {} trials that DIS decided; {words}", objective.title(), found.trials);
         let rows = found
@@ -130,7 +120,8 @@ impl Arguments {
             .map(|one| of_lie(&one.policy, &one.lie, one.differences.iter().map(|it| number(it.mean))));
         let header = of_lie("policy", "lie", &found.counts);
         let mut out = Report::from(first);
-        out.show(Table::of(header, rows));
+        out.rows("policies", &found.worths)?;
+        out.show("policies", Table::of(header, rows));
         Ok(out)
     }
 }
@@ -144,20 +135,21 @@ fn borne(found: &Deceit) -> Table {
     let header = of_lie("policy", "lie", found.counts.iter().map(Entry::from).chain(["breaks down".into()]));
     let row = |one: &Borne| {
         let means = one.means.iter().map(|value| mean(*value));
-        of_lie(&one.policy, &one.lie, means.chain([in_words(one, &found.counts).into()]))
+        of_lie(&one.policy, &one.lie, means.chain([breakdown(one, &found.counts)]))
     };
     Table::of(header, found.borne.iter().map(row))
 }
 
-/// The breakdown in words: "between 2 and 5 of 6".
-fn in_words(one: &Borne, counts: &[u32]) -> String {
+/// The breakdown in words: "between 2 and 5 of 6"; for programs both numbers, as far as they are known.
+fn breakdown(one: &Borne, counts: &[u32]) -> Entry {
     let all = counts.last().copied().unwrap_or_default();
     let at = |place: usize| counts.get(place).copied().unwrap_or_default();
-    match (one.breakdown.safe, one.breakdown.broken) {
+    let words = match (one.breakdown.safe, one.breakdown.broken) {
         (None, _) => "no room shown".to_owned(),
         (Some(safe), Some(broken)) => format!("between {} and {} of {all}", at(safe), at(broken)),
         (Some(safe), None) => format!("above {} of {all}, or never", at(safe)),
-    }
+    };
+    Entry::from(words).with([one.breakdown.safe, one.breakdown.broken].map(|place| place.map(at)))
 }
 
 fn prices(found: &Deceit) -> Table {
@@ -165,7 +157,7 @@ fn prices(found: &Deceit) -> Table {
         let has_one = found.prices.iter().filter(|other| other.policy == price.policy).count() == 1;
         let Difference { mean, interval } = price.difference;
         let place = if has_one { "everywhere" } else { &price.lie };
-        of_lie(&price.policy, place, [number(mean), right(between(interval))])
+        of_lie(&price.policy, place, [number(mean), range(interval)])
     });
     Table::of(["policy", "where", "difference", "95 % interval"], rows)
 }
@@ -176,24 +168,4 @@ fn judgements(found: &Deceit) -> Table {
         of_lie(&one.guide, &one.lie, [right(one.liars)].into_iter().chain(values))
     });
     Table::of(["estimator", "lie", "liars"].into_iter().chain(ACCURACY), rows)
-}
-
-fn as_json(found: &Deceit) -> serde_json::Value {
-    let borne = found.borne.iter().map(|one| {
-        json!({"policy": one.policy, "lie": one.lie, "means": one.means, "intervals": one.breakdown.intervals,
-            "has_room": one.breakdown.has_room,
-            "safe": one.breakdown.safe.map(|at| found.counts[at]),
-            "broken": one.breakdown.broken.map(|at| found.counts[at])})
-    });
-    let prices = found.prices.iter().map(|price| {
-        json!({"policy": price.policy, "rule": price.rule, "lie": price.lie,
-            "difference": price.difference.mean, "interval": price.difference.interval})
-    });
-    let judgements = found.judgements.iter().map(|one| {
-        let values: BTreeMap<&str, &Option<f64>> = ACCURACY.into_iter().zip(&one.values).collect();
-        json!({"estimator": one.guide, "lie": one.lie, "liars": one.liars, "values": values})
-    });
-    json!({"metric": found.metric, "margin": found.margin, "draw": found.draw, "liars": found.counts,
-        "policies": borne.collect::<Vec<_>>(), "prices": prices.collect::<Vec<_>>(),
-        "judgements": judgements.collect::<Vec<_>>()})
 }

@@ -7,7 +7,6 @@ use experiments::regret::{
     Analysis, Choices, Criteria, DecisionRow, Estimate, SUMMARY, Study, StudyFolder, TABLE, analyse,
 };
 use reports::regret_figures;
-use serde_json::json;
 
 use crate::arguments::{
     MeasureArgument, ProgressArguments, ShownArguments, WorldArgument, limit, parse_policy,
@@ -83,12 +82,9 @@ impl Arguments {
         for (name, content) in regret_figures(&analyses)? {
             NewFile::write(&folder.folder.path, &name, &content)?;
         }
-        if self.shown.is_json() {
-            let name = &folder.study.name;
-            let output = json!({"study": name, "analyses": analyses});
-            return Report::json(&output);
-        }
-        Ok(told(&folder, &analyses))
+        let mut out = told(&folder, &analyses);
+        out.rows("analyses", &analyses)?;
+        Ok(out)
     }
 
     fn objectives(&self, tasks: &[String]) -> Result<Vec<Objective>, Failure> {
@@ -185,11 +181,12 @@ fn tell_analysis(out: &mut Report, analysis: &Analysis) {
         let shares = [&one.best, &one.outranked, &one.achieved].map(percent);
         [one.policy.clone(), plain(&one.regret)].into_iter().chain(shares).map(right)
     });
-    out.show(Table::of(["policy", "regret", "best choice", "better ones", "achieved"], rows));
+    let header = ["policy", "regret", "best choice", "better ones", "achieved"];
+    out.show("analyses", Table::of(header, rows));
     let header = ["feature of an assignment", "rank correlation with the outcome", "decisions"];
     let rows = analysis
         .features
         .iter()
         .map(|row| [row.feature.clone(), plain(&row.correlation), row.decisions.to_string()].map(right));
-    out.show(Table::of(header, rows));
+    out.show("analyses", Table::of(header, rows));
 }

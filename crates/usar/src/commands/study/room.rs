@@ -3,9 +3,8 @@
 use experiments::comparison::short;
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::folder::Folder;
-use reports::table::{between, mean, number};
+use reports::table::{between, mean, number, range};
 use serde::Serialize;
-use serde_json::json;
 use statistics::{Moments, cautious};
 
 use crate::arguments::{PoliciesArgument, ProgressArguments, ShownArguments, count, limit, one_seed};
@@ -90,25 +89,23 @@ impl Arguments {
                 let experiment = self.experiment(file, registry)?;
                 let named = Path::new("results").join(format!("room-{}", experiment.name));
                 let place = self.out.clone().unwrap_or(named);
-                self.told(&[self.progress.finished(&place, experiment)?])
+                Self::told(&[self.progress.finished(&place, experiment)?])
             }
             folders => {
                 let read = |folder: &PathBuf| read_sweep(folder, registry);
-                self.told(&folders.iter().map(read).collect::<Result<Vec<_>, _>>()?)
+                Self::told(&folders.iter().map(read).collect::<Result<Vec<_>, _>>()?)
             }
         }
     }
 
-    fn told(&self, folders: &[Folder]) -> Result<Report, Failure> {
+    fn told(folders: &[Folder]) -> Result<Report, Failure> {
         let worlds = folders.iter().map(World::of).collect::<Result<Vec<_>, _>>()?;
-        if self.shown.is_json() {
-            return Report::json(&json!({ "worlds": worlds }));
-        }
         let of = |World { world, trials, .. }: &World| {
             format!("{world}: rescuees.total of {trials} trials, paired by seed; minus {DRAW}")
         };
         let mut out = Report::of(worlds.iter().map(of));
-        out.show(if let [world] = worlds.as_slice() { of_one(world) } else { of_all(&worlds) });
+        out.rows("worlds", &worlds)?;
+        out.show("worlds", if let [world] = worlds.as_slice() { of_one(world) } else { of_all(&worlds) });
         Ok(out)
     }
 
@@ -140,7 +137,7 @@ fn of_one(world: &World) -> Table {
             Entry::from(&row.policy),
             mean(row.mean),
             number(row.difference),
-            right(between(row.interval)),
+            range(row.interval),
             right_or_dash(row.percent, |percent| format!("{percent:+.1}")),
         ]
     };

@@ -6,7 +6,6 @@ use experiments::explore::{Evaluations, FIGURE, INDICES, Method, Row, Sensitivit
 use experiments::files::NewFile;
 use experiments::job::interrupted;
 use reports::{ranking, sensitivity_figure, sensitivity_table};
-use serde_json::json;
 
 use crate::arguments::{ComparisonArguments, ParameterArguments, ShownArguments, count, seed};
 use crate::prelude::*;
@@ -126,22 +125,12 @@ impl Arguments {
         let of = |name: String| rows.iter().filter(|row| row.outcome.name() == name).collect::<Vec<&Row>>();
         let panels: Vec<Vec<&Row>> = outcomes().map(|outcome| of(outcome.name())).collect();
         let failures = study.failures(self.blocks(), evaluations);
-        if self.shown.is_json() {
-            let in_words = outcomes().zip(&panels).map(|(outcome, rows)| ranking(outcome, rows));
-            let output = json!({
-                "scenario": study.space.experiment.base.name,
-                "method": study.method,
-                "trials": self.trials,
-                "indices": rows,
-                "in_words": in_words.collect::<Vec<String>>(),
-                "points_without_numbers": failures.map_or(0, |(count, _)| count),
-            });
-            return Report::json(&output);
-        }
         let mut out = Report::default();
         for (outcome, rows) in outcomes().zip(&panels) {
-            out.titled(outcome.name(), sensitivity_table(rows));
+            out.say(outcome.name());
+            out.show("indices", sensitivity_table(rows));
         }
+        out.rows("indices", rows)?;
         out.extend(outcomes().zip(&panels).map(|(outcome, rows)| ranking(outcome, rows)));
         out.extend(failures.map(|(count, reason)| {
             format!("\n{count} points have no number and leave out their blocks; the first: {reason}")

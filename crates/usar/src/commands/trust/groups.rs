@@ -2,8 +2,7 @@
 
 use experiments::experiment::PolicySpec;
 use rne_core::LogBase;
-use serde_json::{Value, json};
-use teaming::{Account, Decision, TaskId};
+use teaming::{Account, Decision};
 
 use super::team::Team;
 use crate::prelude::*;
@@ -15,29 +14,15 @@ pub(super) fn told(team: &Team, spec: &PolicySpec, is_json: bool) -> Result<Repo
         .assignment
         .check(&team.question)
         .map_err(|error| Failure::run(format!("{}: {error}", spec.label)))?;
-    match (is_json, team.is_table()) {
-        (true, true) => Report::json(&json!({
-            "policy": spec.label,
-            "groups": team.question.task_ids().map(|task| group(team, &decision, task)).collect::<Vec<_>>(),
-            "decision": decision,
-        })),
-        (true, false) => Report::plain_json(&decision),
-        (false, _) => {
-            let mut out = Report::default();
-            out.show(groups(team, &decision));
-            tell_account(&mut out, &decision, spec);
-            out.extend(merges(team, &decision));
-            Ok(out)
-        }
+    if is_json && !team.is_table() {
+        return Report::document(&decision);
     }
-}
-
-fn group(team: &Team, decision: &Decision, task: TaskId) -> Value {
-    let robots = decision.assignment.of(task).iter().map(|robot| team.name(*robot));
-    json!({
-        "task": team.question.tasks[task.index()].name,
-        "robots": robots.collect::<Vec<String>>(),
-    })
+    let mut out = Report::default();
+    out.show("groups", groups(team, &decision));
+    out.rows("decision", [&decision])?;
+    tell_account(&mut out, &decision, spec);
+    out.extend(merges(team, &decision));
+    Ok(out)
 }
 
 /// A row for each task, a column for each role.
@@ -47,7 +32,8 @@ fn groups(team: &Team, decision: &Decision) -> Table {
         let group = decision.assignment.of(task);
         let of_role = move |role| {
             let members = question.of_role(role).filter(|member| group.contains(&member.id));
-            members.map(|member| team.name(member.id)).collect::<Vec<String>>().join(" ")
+            let names: Vec<String> = members.map(|member| team.name(member.id)).collect();
+            Entry::from(names.join(" ")).with(names)
         };
         labelled(&question.tasks[task.index()].name, question.role_ids().map(of_role))
     };

@@ -2,7 +2,7 @@
 
 use pictures::Picture;
 use reports::distrust_map;
-use serde_json::{Value, json};
+use serde_json::json;
 use tables::{Format, shown_as};
 use teaming::MadeMeasure;
 
@@ -59,41 +59,30 @@ impl<'t> Matrix<'t> {
         Picture::of_svg(distrust_map(&title, &names, &self.distrust), DPI)
     }
 
-    pub(super) fn as_json(&self) -> Result<Report, Failure> {
-        let measure = &self.measure;
-        let all = |value: &dyn Fn(f64) -> Value| {
-            let row = |row: &Vec<f64>| row.iter().map(|distrust| value(*distrust)).collect::<Vec<Value>>();
-            self.distrust.iter().map(row).collect::<Vec<_>>()
-        };
-        Report::json(&json!({
-            "measure": measure.label,
-            "unit": measure.it.unit(),
-            "needs": self.team.question.needs,
-            "weights": self.weights,
-            "robots": self.names,
-            // serde_json has null for what is no finite number.
-            "distrust": all(&|distrust| json!(distrust)),
-            "trust": all(&|distrust| json!(measure.it.trust(distrust))),
-        }))
-    }
-
-    pub(super) fn told(&self) -> Report {
+    pub(super) fn told(&self) -> Result<Report, Failure> {
         let (label, unit) = (&self.measure.label, self.measure.it.unit());
         let mut out = Report::from(format!("{label} in {unit}: lower is more trust"));
         if shown_as() == Format::Table && self.names.len() > MOST_SHOWN {
-            out.show(self.extremes());
+            out.show("distrust", self.extremes());
             out.say("all pairs: --format csv, --json, or --out matrix.svg");
         } else {
-            out.show(self.table());
+            out.show("distrust", self.table(shown));
         }
         out.say(format!("needs: {}", self.team.needs()));
-        out
+        if shown_as() == Format::Json {
+            out.show("trust", self.table(|distrust| right(self.measure.it.trust(distrust))));
+            let needs = self.team.question.needs.iter().zip(&self.weights);
+            let needs: Vec<_> =
+                needs.map(|(need, used)| json!({"need": need.name, "weight": used})).collect();
+            out.rows("needs", &needs)?;
+        }
+        Ok(out)
     }
 
     /// All pairs, a row for each robot that trusts.
-    fn table(&self) -> Table {
+    fn table(&self, cell: impl Fn(f64) -> Entry) -> Table {
         let rows = self.names.iter().zip(&self.distrust);
-        let row = |(name, row): (&String, &Vec<f64>)| labelled(name, row.iter().copied().map(shown));
+        let row = |(name, row): (&String, &Vec<f64>)| labelled(name, row.iter().copied().map(&cell));
         Table::of(labelled("from \\ to", self.names.iter().map(right)), rows.map(row))
     }
 
@@ -122,11 +111,12 @@ fn drawn_name(name: &str) -> String {
 
 /// A value as an entry: in full for programs.
 fn shown(distrust: f64) -> Entry {
-    right(if distrust.is_infinite() {
+    let text = if distrust.is_infinite() {
         "infinite".to_owned()
     } else if shown_as().is_for_programs() {
         distrust.to_string()
     } else {
         format!("{distrust:.6}")
-    })
+    };
+    valued(distrust, text)
 }

@@ -32,36 +32,28 @@ enum Base {
 
 impl PairArguments {
     /// The RNE of the first side towards the second.
-    pub(super) fn told(&self, weights: Option<&str>, is_json: bool) -> Result<Report, Failure> {
+    pub(super) fn told(&self, weights: Option<&str>) -> Result<Report, Failure> {
         let weights = self.weights(weights)?;
         let from = distribution("--trustor", &self.trustor, &weights)?;
         let to = distribution("--trustee", &self.trustee, &weights)?;
         let rne = relative_entropy(&from, &to).map_err(Failure::input)?;
-        let (base, name, unit) = match self.log_base {
-            Base::E => (LogBase::E, "e", "nats"),
-            Base::Two => (LogBase::Two, "2", "bits"),
-            Base::Ten => (LogBase::Ten, "10", "bans"),
+        let (base, unit) = match self.log_base {
+            Base::E => (LogBase::E, "nats"),
+            Base::Two => (LogBase::Two, "bits"),
+            Base::Ten => (LogBase::Ten, "bans"),
         };
         let in_base = rne.in_base(base);
-        if is_json {
-            return Report::json(&json!({
-                "rne": rne.nats(),
-                "infinite": rne.is_infinite(),
-                "trust": rne.trust(),
-                "base": name,
-                "rne_in_base": in_base,
-                "from": from,
-                "to": to,
-            }));
-        }
         let value = in_base.map_or("infinite".to_owned(), |value| format!("{value:.6} {unit}"));
         let trust = rne.trust();
-        Ok(Report::of([
+        let mut out = Report::of([
             format!("RNE    {value}"),
             format!("trust  {trust:.6}   (exp of minus the RNE in nats: 1 is full trust, 0 none)"),
             format!("from   {}", shares(&from)),
             format!("to     {}", shares(&to)),
-        ]))
+        ]);
+        let pair = json!({"rne": rne.nats(), "trust": trust, unit: in_base, "from": from, "to": to});
+        out.rows("pair", [&pair])?;
+        Ok(out)
     }
 
     fn weights(&self, weights: Option<&str>) -> Result<NeedWeights, Failure> {

@@ -8,6 +8,7 @@ use crate::prelude::*;
 
 #[derive(Serialize)]
 struct Output<'a> {
+    schema_version: u32,
     scenario: &'a str,
     policy: &'a str,
     seed: u64,
@@ -38,7 +39,7 @@ pub(super) fn print(recordings: &[Recording], time_s: f64) -> Result<Report, Fai
     for recording in recordings {
         let number = recording.frame_at(time_s);
         let frame = recording.frame(number).map_err(Failure::input)?;
-        Report::json(&output(recording, number, frame))?.print()?;
+        Report::document(&output(recording, number, frame))?.print()?;
     }
     Ok(Report::default())
 }
@@ -70,6 +71,7 @@ fn output(recording: &Recording, number: usize, frame: Frame) -> Output<'_> {
     };
     let states = header.codes.rescuees.iter().enumerate();
     Output {
+        schema_version: 1,
         scenario: &header.scenario.name,
         policy: &header.policy,
         seed: header.seed,

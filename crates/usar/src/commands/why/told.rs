@@ -28,7 +28,7 @@ pub(super) fn text(account: &Account, asked: &Trial) -> Report {
     }));
     out.say("");
     if let Some(table) = said_and_true(account) {
-        out.show(table);
+        out.show("account", table);
         out.say("");
     }
     match &decision.account {
@@ -197,7 +197,8 @@ fn needs(out: &mut Report, account: &Account, pair: &Directed) {
         [question.needs[k].name.clone(), p, q, adds].map(right)
     };
     let header = ["need".to_owned(), format!("share in {from}"), format!("share in {to}")];
-    out.show(Table::of(header.into_iter().chain([format!("adds ({unit})")]), needs.into_iter().map(row)));
+    let header = header.into_iter().chain([format!("adds ({unit})")]);
+    out.show("account", Table::of(header, needs.into_iter().map(row)));
 }
 
 fn others(out: &mut Report, question: &Question, others: &[OtherChoice]) {

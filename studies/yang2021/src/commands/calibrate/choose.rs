@@ -1,8 +1,7 @@
 //! `--choose`: finds which of several calibrated candidates is nearest to the recorded trials.
 
 use experiments::comparison::digits;
-use scenario::Scenario;
-use serde_json::json;
+use usar_sim::scenario::Scenario;
 use yang2021::calibration::{CALIBRATED, Candidate, Judged, NOT_TOLD_APART, POLICY, Target, judge};
 use yang2021::table::choice_table;
 
@@ -33,15 +32,12 @@ pub(super) fn execute(asked: &Arguments, registry: &Registry) -> Result<Report, 
         write_csv(path, &target, &judged)?;
         write_identified(&path.with_file_name("identified.csv"), &measured)?;
     }
-    if asked.shown.is_json() {
-        return Report::json(&as_json(&target, &judged));
-    }
     Ok(told(&target, &judged, &seeds))
 }
 
 fn told(target: &Target, judged: &[Judged], seeds: &[u64]) -> Report {
     let mut out = Report::default();
-    out.show(choice_table(target, judged));
+    out.show("candidates", choice_table(target, judged));
     out.say(format!(
         "mean ± sample standard deviation of {POLICY} over {} trials (seeds {} to {}); data: {} trials",
         seeds.len(),
@@ -57,22 +53,6 @@ fn told(target: &Target, judged: &[Judged], seeds: &[u64]) -> Report {
         alike => format!("not to be told from it by these data: {}", alike.join(", ")),
     });
     out
-}
-
-fn as_json(target: &Target, judged: &[Judged]) -> serde_json::Value {
-    let candidate = |judged: &Judged| {
-        let spreads = target.quantities.iter().zip(&judged.spreads);
-        let quantities = spreads.map(|(q, s)| (q.name.clone(), json!({"mean": s.mean, "sd": s.sd})));
-        json!({
-            "candidate": judged.candidate,
-            "misfit": judged.misfit,
-            "edge_penalty": judged.edge_penalty,
-            "share_nearest": judged.share_nearest,
-            "quantities": quantities.collect::<serde_json::Map<_, _>>(),
-        })
-    };
-    let candidates: Vec<_> = judged.iter().map(candidate).collect();
-    json!({"choice": judged[0].candidate, "candidates": candidates})
 }
 
 /// How well the values of each candidate are known.
