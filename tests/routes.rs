@@ -9,6 +9,8 @@ use rand::{RngExt, SeedableRng};
 use scenario::shapes::{Outline, RadiationZone};
 use scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::belief::Belief;
+use usar_sim::executor::Executor;
+use usar_sim::geometry::{Outline, RadiationZone};
 use usar_sim::model::{Layout, Model};
 use usar_sim::navigation::{Goal, Navigator, Outlook};
 use usar_sim::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query};
@@ -368,7 +370,7 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
             let (team, step) = (&world.robots[..], 1);
             let outlook =
                 Outlook { model: &model, team, step, belief_of: |_| known, speed_of: |_: &Robot| 2.0 };
-            navigator.plan(&outlook, false);
+            navigator.plan(&outlook, Executor::Serial);
             navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
         };
         let before = length(&known);

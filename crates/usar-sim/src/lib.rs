@@ -22,6 +22,7 @@ pub mod belief;
 mod by_x;
 pub mod conflict;
 pub mod event;
+pub mod executor;
 pub mod fit;
 pub mod hash;
 pub mod ids;

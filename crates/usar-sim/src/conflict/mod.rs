@@ -23,6 +23,7 @@ use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
 use crate::event::EventLog;
+use crate::executor::Executor;
 use crate::model::{RightOfWayModel, RuleKind};
 use crate::report::Track;
 
@@ -33,9 +34,6 @@ use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
 use reciprocal::{Near, Reciprocal, Sight, Turn, Unhindered};
 use sets::Sets;
-
-/// From so many robots on, a step is worth more than one thread.
-pub(crate) const MANY_ROBOTS: usize = 500;
 
 /// The conflict resolver of one trial.
 #[derive(Serialize, Deserialize)]
@@ -68,13 +66,14 @@ pub struct Scratch {
     unhindered: Unhindered,
     /// For each robot, what is near it. The walls are kept from step to step, to save time.
     near: Vec<Near>,
-    sight: Sight,
+    /// For each part of the team.
+    sights: Vec<Sight>,
     /// For each robot, the direction of its preferred velocity; zero if it has nowhere to go.
     directions: Vec<Vector>,
     /// For each robot, the robot for which it makes room.
     heads: Vec<Option<usize>>,
-    /// Whether large teams are directed on all threads.
-    pub in_parallel: bool,
+    /// Who does the work of the step.
+    pub executor: Executor,
 }
 
 /// One step of a rule with these constants and this state.

@@ -5,10 +5,10 @@ mod traveller;
 mod way_out;
 
 use parry2d::math::Vector;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::belief::{Belief, News};
+use crate::executor::Executor;
 use crate::ids::RobotId;
 use crate::model::{Model, RuleKind};
 use crate::planning::{KnownObstacle, Planner, Query, Route, Walls, polygon_contains};
@@ -28,9 +28,6 @@ const CHECK_EVERY_S: f64 = 0.5;
 
 /// A detour leads round standing robots within this distance, in metres.
 const DETOUR_RANGE_M: f32 = 8.0;
-
-/// Parts into which a large team is divided for each thread, so that no thread waits long for another.
-const PARTS_PER_THREAD: usize = 4;
 
 /// The effect of news on a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,22 +97,20 @@ impl Navigator {
         }
     }
 
-    /// Plans routes, on all threads if `in_parallel`. A robot plans if it has no route yet, if new knowledge
-    /// cuts its route or may make it dearer or cheaper, or if it makes no progress.
-    pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, in_parallel: bool)
+    /// Plans routes. A robot plans if it has no route yet, if new knowledge cuts its route or may make it
+    /// dearer or cheaper, or if it makes no progress.
+    pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, executor: Executor)
     where
         B: Fn(RobotId) -> &'o Belief + Sync,
         S: Fn(&Robot) -> f64 + Sync,
     {
         let Self { travellers, trails } = self;
-        if !in_parallel {
-            return outlook.plan(outlook.team, travellers, trails);
-        }
-        let parts = PARTS_PER_THREAD * rayon::current_num_threads();
-        let robots = outlook.team.len().div_ceil(parts).max(1);
-        let journeys = travellers.par_chunks_mut(robots).zip(trails.par_chunks_mut(robots));
-        let parts = outlook.team.par_chunks(robots).zip(journeys);
-        parts.for_each(|(team, (travellers, trails))| outlook.plan(team, travellers, trails));
+        let executor = executor.for_team(outlook.team.len());
+        let part = executor.part(outlook.team.len());
+        let journeys = travellers.chunks_mut(part).zip(trails.chunks_mut(part));
+        executor.run(outlook.team.chunks(part).zip(journeys), |(team, (travellers, trails))| {
+            outlook.plan(team, travellers, trails);
+        });
     }
 
     /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero

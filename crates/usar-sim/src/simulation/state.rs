@@ -3,17 +3,16 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use rayon::prelude::*;
-use scenario::LevelSource;
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
 use super::charge::{bearable, last_event, spend};
 use super::faults::Faults;
 use super::moments::Moments;
-use crate::belief::{Beliefs, Holder};
-use crate::conflict::{self, Delay, MANY_ROBOTS, Mover, PriorityKey, Resolver};
+use crate::belief::Beliefs;
+use crate::conflict::{self, Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
+use crate::executor::Executor;
 use crate::hash::{ABSENT, HashChain, PARTS, part};
 use crate::metrics::Metrics;
 use crate::mission::{Activity, Agent, Mission, Scene};
@@ -63,8 +62,6 @@ pub(super) struct Scratch {
     movers: Vec<Mover<'static>>,
     conflict: conflict::Scratch,
     tracks: Vec<Track>,
-    /// Whether the steps of a large team are done on all threads.
-    in_parallel: bool,
     /// See [`Simulation::steer`](super::Simulation::steer).
     pub(super) steering: Option<Vec<Vector>>,
 }
@@ -72,7 +69,7 @@ pub(super) struct Scratch {
 impl Scratch {
     /// Has the steps of a large team done on all threads.
     pub(super) fn use_all_threads(&mut self) {
-        (self.in_parallel, self.conflict.in_parallel) = (true, true);
+        self.conflict.executor = Executor::Threads;
     }
 }
 
@@ -217,8 +214,7 @@ impl State {
             belief_of: |robot| beliefs.of(mission.crew.holder_of(robot, model)),
             speed_of: |robot: &Robot| faults.speed_of(robot.id, mission.crew.speed_of(model, robot)),
         };
-        let in_parallel = scratch.in_parallel && beliefs.team.len() >= MANY_ROBOTS;
-        self.navigator.plan(&outlook, in_parallel);
+        self.navigator.plan(&outlook, scratch.conflict.executor);
     }
 
     /// Decides which robots go and which wait, and notes why robots stop.
@@ -226,11 +222,7 @@ impl State {
         let (mission, beliefs, navigator) = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(&mut scratch.movers);
         let of = |robot: &Robot| mover(robot, model, mission, beliefs, navigator);
-        if scratch.in_parallel && beliefs.team.len() >= MANY_ROBOTS {
-            movers.par_extend(beliefs.team.par_iter().map(of));
-        } else {
-            movers.extend(beliefs.team.iter().map(of));
-        }
+        scratch.conflict.executor.for_team(beliefs.team.len()).extend(&mut movers, &beliefs.team, of);
         if !self.faults.is_empty() {
             self.faults.slow(&mut movers);
         }
@@ -254,8 +246,7 @@ impl State {
             let cause = delay_cause(robot, activity, traveller, *directive);
             tally.note_delay(Delay { cause, waits_for: directive.waits_for() }, traveller.stalled_steps());
         }
-        movers.clear();
-        scratch.movers = movers.into_iter().map(|_| unreachable!("it is empty")).collect(); // the same memory
+        scratch.movers = movers.into_iter().map_while(|_| None).collect(); // empty, in the same memory
     }
 
     /// Where robots go first by their levels, they may go by what they said of them.

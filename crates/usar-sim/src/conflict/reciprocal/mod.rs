@@ -17,17 +17,15 @@ mod unhindered;
 mod velocity;
 mod walls;
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::predict::{largest, range};
 use super::retreat::{Crowd, Retreats};
-use super::{Directive, MANY_ROBOTS, Mover, Scratch, Step};
+use super::{Directive, Mover, Scratch, Step};
 use crate::event::Event;
 use crate::model::ReciprocalModel;
 use crate::report::Track;
 use encounter::LONGEST_HORIZON_S;
-use half_planes::HalfPlane;
 pub(super) use passage::Turn;
 use passage::{Entrant, Entry, Follows, decide};
 use steering::Steering;
@@ -72,24 +70,20 @@ pub(super) struct Reciprocal {
     avoidances: Vec<Avoidance>,
 }
 
-/// What one robot adapts, and by what.
-type Adapts<'a> = ((&'a mut Directive, &'a Avoidance), &'a Track);
-
 impl Reciprocal {
     /// Adapts the velocities of robots that are close to others to how robots move now.
     pub(super) fn adapt(&self, directives: &mut [Directive], tracks: &[Track], scratch: &mut Scratch) {
-        let adapt = |planes: &mut Vec<HalfPlane>, ((directive, avoidance), me): Adapts<'_>| {
-            if !avoidance.neighbours.is_empty() {
-                directive.set_velocity(avoidance.velocity(*me, |j| tracks[j], planes));
+        let executor = scratch.executor.for_team(tracks.len());
+        let part = executor.part(tracks.len());
+        scratch.sights.resize_with(tracks.len().div_ceil(part), Sight::default);
+        let robots = directives.chunks_mut(part).zip(self.avoidances.chunks(part)).zip(tracks.chunks(part));
+        executor.run(robots.zip(&mut scratch.sights), |(((directives, avoidances), own), sight)| {
+            for ((directive, avoidance), me) in directives.iter_mut().zip(avoidances).zip(own) {
+                if !avoidance.neighbours.is_empty() {
+                    directive.set_velocity(avoidance.velocity(*me, |j| tracks[j], &mut sight.planes));
+                }
             }
-        };
-        if scratch.in_parallel && tracks.len() >= MANY_ROBOTS {
-            let robots = directives.par_iter_mut().zip(&self.avoidances).zip(tracks);
-            robots.for_each_init(Vec::new, adapt);
-        } else {
-            let robots = directives.iter_mut().zip(&self.avoidances).zip(tracks);
-            robots.for_each(|robot| adapt(&mut scratch.sight.planes, robot));
-        }
+        });
     }
 }
 
@@ -198,13 +192,13 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
     /// Directs all robots.
     fn steer(&mut self) {
         let Self { rules, state, scratch, movers, directives, .. } = self;
-        let Scratch { neighbours, unhindered, turns, directions, heads, near, sight, in_parallel, .. } =
+        let Scratch { neighbours, unhindered, turns, directions, heads, near, sights, executor, .. } =
             &mut **scratch;
         let stopping = |mover: &Mover| 2.0 * mover.brakes.way(mover.speed);
         let heeded_within = movers.iter().map(stopping).fold(HEEDED_WITHIN_M, f32::max);
         let range = range(movers, MARGIN_M, LONGEST_HORIZON_S).min(heeded_within + 2.0 * largest(movers));
-        let in_parallel = *in_parallel && movers.len() >= MANY_ROBOTS;
-        unhindered.find(movers, neighbours, range, in_parallel);
+        let executor = executor.for_team(movers.len());
+        unhindered.find(movers, neighbours, range, executor);
         directions.clear();
         directions.extend(movers.iter().map(|mover| mover.preferred.normalize_or_zero()));
         heads.clear();
@@ -212,11 +206,13 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         state.retreats.iter().for_each(|(i, retreat)| heads[i] = Some(retreat.head));
         near.resize_with(movers.len(), Near::default);
         let steering = Steering { rules, movers, neighbours, unhindered, turns, directions, heads, range };
-        if in_parallel {
-            steering.steer_in_parallel(directives, &mut state.avoidances, near);
-        } else {
-            steering.steer(directives, &mut state.avoidances, near, sight);
-        }
+        let part = executor.part(movers.len());
+        sights.resize_with(movers.len().div_ceil(part), Sight::default);
+        let robots = directives.chunks_mut(part).zip(state.avoidances.chunks_mut(part));
+        let robots = robots.zip(near.chunks_mut(part)).zip(sights).enumerate();
+        executor.run(robots, |(at, (((directives, avoidances), near), sight))| {
+            steering.steer(at * part, directives.iter_mut().zip(avoidances).zip(near), sight);
+        });
     }
 
     /// The nearest robot in the way of a robot's preferred velocity.

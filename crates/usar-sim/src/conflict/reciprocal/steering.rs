@@ -2,7 +2,6 @@
 //! the robots of a large team can be steered at the same time.
 
 use parry2d::math::Vector;
-use rayon::prelude::*;
 
 use super::encounter::Encounter;
 use super::half_planes::HalfPlane;
@@ -77,31 +76,16 @@ pub(super) struct Steering<'s, 'm> {
 }
 
 impl Steering<'_, '_> {
-    /// The directives of all robots, one robot after the other.
-    pub(super) fn steer(
+    /// The directives of these robots, from the `first` on.
+    pub(super) fn steer<'a>(
         &self,
-        directives: &mut [Directive],
-        avoidances: &mut [Avoidance],
-        near: &mut [Near],
+        first: usize,
+        robots: impl Iterator<Item = ((&'a mut Directive, &'a mut Avoidance), &'a mut Near)>,
         sight: &mut Sight,
     ) {
-        for (i, ((directive, avoidance), near)) in directives.iter_mut().zip(avoidances).zip(near).enumerate()
-        {
-            *directive = self.directive(i, avoidance, near, sight);
+        for (i, ((directive, avoidance), near)) in robots.enumerate() {
+            *directive = self.directive(first + i, avoidance, near, sight);
         }
-    }
-
-    /// The same, on all threads.
-    pub(super) fn steer_in_parallel(
-        &self,
-        directives: &mut [Directive],
-        avoidances: &mut [Avoidance],
-        near: &mut [Near],
-    ) {
-        let robots = directives.par_iter_mut().zip(avoidances).zip(near).enumerate();
-        robots.for_each_init(Sight::default, |sight, (i, ((directive, avoidance), near))| {
-            *directive = self.directive(i, avoidance, near, sight);
-        });
     }
 
     /// The directive of a robot: the velocity that it takes among the others, or why it stands still.

@@ -8,13 +8,13 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use parry2d::math::Vector;
-use rayon::prelude::*;
 
 use super::encounter::LONGEST_HORIZON_S;
 use super::velocity::{LEAST_SHARE, MARGIN_M};
 
 use crate::conflict::Mover;
 use crate::conflict::predict::Neighbours;
+use crate::executor::Executor;
 
 /// Distance in which rounding is lost, in metres.
 const ROUNDING_M: f32 = 0.001;
@@ -67,9 +67,9 @@ pub(in crate::conflict) struct Unhindered {
 }
 
 impl Unhindered {
-    /// Looks at all robots anew, on all threads if `in_parallel`. The neighbours must be in order; robots
-    /// farther apart than `range` metres do not matter.
-    pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, range: f32, in_parallel: bool) {
+    /// Looks at all robots anew. The neighbours must be in order; robots farther apart than `range` metres do
+    /// not matter.
+    pub(super) fn find(&mut self, movers: &[Mover], neighbours: &Neighbours, range: f32, executor: Executor) {
         self.courses.clear();
         self.courses.extend(neighbours.by_x().iter().map(|(i, _)| Course::of(i, &movers[i])));
         self.is_free.clear();
@@ -96,11 +96,11 @@ impl Unhindered {
                 }
             }
         };
-        if in_parallel {
-            self.courses.par_iter().enumerate().for_each(meet_those_after);
-        } else {
-            self.courses.iter().enumerate().for_each(meet_those_after);
-        }
+        let part = executor.part(self.courses.len());
+        executor.run(self.courses.chunks(part).enumerate(), |(number, courses)| {
+            let from = number * part;
+            courses.iter().enumerate().for_each(|(at, course)| meet_those_after((from + at, course)));
+        });
     }
 
     /// Whether no other robot hinders a robot.
