@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
 use teaming::{Deadline, PolicyError, Question, Session, TrialStart};
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::Simulation as Trial;
+use usar_sim::simulation::{InTime, Simulation as Trial};
 
 use crate::errors::{raised, unanswered, unread};
 use crate::policy::{Given, Policies, given};
@@ -47,7 +47,8 @@ pub fn to_its_end<'py>(
     let (name, seed, stop) = (trial.given().name.clone(), trial.seed(), Arc::clone(&call.stop));
     let run = || {
         let mut session = session_of(&spec, &trial)?;
-        while trial.step_within(&mut *session, Deadline::when(&stop)).is_none() {
+        let mut session = InTime::new(&mut *session, Deadline::when(&stop));
+        while trial.step(&mut session).is_none() {
             if stop.load(Ordering::Relaxed) {
                 break;
             }

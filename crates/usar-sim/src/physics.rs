@@ -157,12 +157,12 @@ impl Physics {
     }
 
     /// Has the engine step the whole team, however large, in steps in which it runs.
-    pub(crate) fn step_whole_team(&mut self) {
+    pub fn step_whole_team(&mut self) {
         self.quiet.by_island = false;
     }
 
     /// Has the engine run in every step, for everybody: the reference for quiet steps.
-    pub(crate) fn keep_engine_on(&mut self) {
+    pub fn keep_engine_on(&mut self) {
         self.is_always_on = true;
     }
 

@@ -5,7 +5,7 @@ use std::alloc::System;
 
 use scenario::Scenario;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
-use teaming::{Deadline, Session};
+use teaming::Session;
 use usar_sim::conflict::DelayCause;
 use usar_sim::hash::PERIOD_S;
 use usar_sim::simulation::Simulation;
@@ -20,7 +20,7 @@ const STAGES: usize = Stage::ALL.len();
 fn count(trial: &mut Simulation, session: &mut dyn Session) -> [usize; STAGES] {
     let mut taken = [0; STAGES];
     let mut region = Region::new(ALLOCATOR);
-    let step = trial.step_watched(session, Deadline::NEVER, |stage| {
+    let step = trial.watch(session, |stage| {
         let change = region.change_and_reset();
         taken[stage as usize] = change.allocations + change.reallocations;
     });

@@ -15,7 +15,7 @@ use recording::{Options, Recorder, Recording};
 use ron_tree::file::{ReadError, read};
 use teaming::{Deadline, Session};
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::Simulation;
+use usar_sim::simulation::{InTime, Simulation};
 
 use crate::bad_value::BadValue;
 use crate::output::{create_new, trouble};
@@ -39,10 +39,11 @@ pub(crate) fn record_to(
     options: &Options,
     watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
 ) -> Result<TrialRecord, Failure> {
+    let mut session = InTime::new(session, Deadline::when(&STOP));
     let trouble = |error: io::Error| trouble("--record", path, &error);
     let file = BufWriter::with_capacity(BUFFER, create_new("--record", path)?);
     let mut recorder = Recorder::begin(file, &simulation, options).map_err(trouble)?;
-    while simulation.step_within(&mut *session, Deadline::when(&STOP)).is_none() {
+    while simulation.step(&mut session).is_none() {
         recorder.listen(&simulation).map_err(trouble)?;
         watch(&simulation)?;
     }

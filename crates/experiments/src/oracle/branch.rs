@@ -5,7 +5,7 @@ use store::Failure;
 use teaming::{AssignmentError, Deadline, Decision, PolicyError, Session, TrialStart};
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::{Advance, Ask, AssignError, Checkpoint, Simulation};
+use usar_sim::simulation::{Advance, Ask, AssignError, Checkpoint, InTime, Simulation};
 
 /// A branch checks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
@@ -129,7 +129,7 @@ pub fn advance_to(
             }
             Advance::Running => look(trial, halt)?,
             Advance::Asks(_) => {
-                trial.step_within(&mut *session, halt);
+                trial.step(InTime::new(&mut *session, halt));
             }
         }
     }
@@ -202,7 +202,7 @@ impl Branch {
     ) -> Result<Outcome, BranchError> {
         reset(onwards, &self.trial)?;
         loop {
-            match self.trial.step_within(&mut *onwards, halt) {
+            match self.trial.step(InTime::new(&mut *onwards, halt)) {
                 None => look(&self.trial, halt)?,
                 Some(Status::Failed(reason)) => return Err(failed(reason, halt)),
                 Some(_) => return Ok(Outcome::so_far(&self.trial).since(&self.before, false)),

@@ -9,7 +9,8 @@ use teaming::{Deadline, PolicyError, Session, TrialStart};
 use usar_sim::event::Event;
 use usar_sim::fit::Tables;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::Simulation;
+use usar_sim::scenario::Scenario;
+use usar_sim::simulation::{InTime, Simulation};
 
 /// The reason of a trial that ended because its policy gave up at the deadline.
 pub(super) const UNANSWERED: &str = "its policy did not answer in time";
@@ -168,8 +169,9 @@ pub fn run_trial(setup: &TrialSetup, session: &mut dyn Session, halt: &AtomicBoo
         Simulation::new(setup.scenario, setup.seed).map_err(|error| failed(error.to_string()))?;
     session.reset(&setup.start()).map_err(|error| Fault::of_policy(&error))?;
     let mut simulation = if setup.is_checked { simulation.checked() } else { simulation };
+    let mut session = InTime::new(session, Deadline::when(halt));
     let mut deliveries = vec![Vec::new(); setup.scenario.tasks.len()];
-    while simulation.step_within(&mut *session, Deadline::when(halt)).is_none() {
+    while simulation.step(&mut session).is_none() {
         if halt.load(Ordering::Relaxed) {
             return Err(late(HALTED));
         }

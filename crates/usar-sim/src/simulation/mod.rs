@@ -7,6 +7,7 @@
 mod charge;
 mod checkpoint;
 mod faults;
+mod in_time;
 mod moments;
 mod radio;
 mod rescue;
@@ -18,8 +19,7 @@ mod view;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use scenario::{LayoutError, Scenario};
-use teaming::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, TrueLevels};
+use teaming::{Asked, AssignmentError, Decision, Member, Question, Session, TrueLevels};
 use thiserror::Error;
 
 use crate::event::Event;
@@ -31,6 +31,7 @@ use crate::stage::Stage;
 use crate::world::World;
 
 pub use checkpoint::Checkpoint;
+pub use in_time::InTime;
 use setup::Setup;
 pub(crate) use state::State;
 use state::{Listeners, Scratch};
@@ -116,22 +117,6 @@ impl Simulation {
         self
     }
 
-    /// The same trial with the engine on in every step, for tests and measurements of steps in which it
-    /// rests.
-    #[must_use]
-    pub fn with_engine_always_on(mut self) -> Self {
-        self.state.world.physics.keep_engine_on();
-        self
-    }
-
-    /// The same trial with the engine at work for the whole team in steps in which it runs, however large the
-    /// team is: what [`Self::with_engine_always_on`] is compared with.
-    #[must_use]
-    pub fn with_whole_team_stepped(mut self) -> Self {
-        self.state.world.physics.step_whole_team();
-        self
-    }
-
     /// The same trial, with the work of a step divided over all threads where the team is large (500 robots).
     /// The result is the same bit for bit.
     #[must_use]
@@ -160,22 +145,21 @@ impl Simulation {
 
     /// Does the next step, or the rest of a step whose question was answered.
     pub fn advance(&mut self) -> Advance<'_> {
-        self.advance_watched(|_| {})
+        self.advance_watched(&mut |_| {})
     }
 
-    /// An advance that reports the end of each stage of the step, to measure them.
-    pub fn advance_watched(&mut self, mut done: impl FnMut(Stage)) -> Advance<'_> {
+    fn advance_watched(&mut self, done: &mut impl FnMut(Stage)) -> Advance<'_> {
         if let Some(status) = self.ending() {
             return Advance::Over(status);
         }
         if !self.state.is_midway {
-            self.begin_step(&mut done);
+            self.begin_step(done);
         }
         if self.question.is_some() {
             let asks = |question| Advance::Asks(Ask::Grouping(question));
             return self.question.as_ref().map_or(Advance::Running, asks);
         }
-        match self.finish_step(&mut done) {
+        match self.finish_step(done) {
             Ok(()) => Advance::Running,
             Err(reason) => {
                 self.failure = Some(reason.clone());
@@ -219,34 +203,24 @@ impl Simulation {
 
     /// Does a whole step, in which a session answers questions. Returns the status once the trial is over.
     pub fn step(&mut self, session: impl Session) -> Option<Status> {
-        self.step_within(session, Deadline::NEVER)
+        self.watch(session, |_| {})
     }
 
-    /// A step whose answers are wanted before a deadline.
-    pub fn step_within(&mut self, session: impl Session, deadline: Deadline<'_>) -> Option<Status> {
-        self.step_watched(session, deadline, |_| {})
-    }
-
-    /// A step that reports the end of each of its stages, to measure them.
-    pub fn step_watched(
-        &mut self,
-        mut session: impl Session,
-        deadline: Deadline<'_>,
-        mut done: impl FnMut(Stage),
-    ) -> Option<Status> {
+    /// A [step](Self::step) that reports the end of each of its stages, to measure them.
+    pub fn watch(&mut self, mut session: impl Session, mut done: impl FnMut(Stage)) -> Option<Status> {
         loop {
             match self.advance_watched(&mut done) {
                 Advance::Running => return None,
                 Advance::Over(status) => return Some(status),
-                Advance::Asks(Ask::Grouping(_)) => self.answer(&mut session, deadline),
+                Advance::Asks(Ask::Grouping(_)) => self.answer(&mut session),
             }
         }
     }
 
     /// Lets a session answer the question that waits. Without a usable answer, the trial has failed.
-    fn answer(&mut self, session: &mut impl Session, deadline: Deadline<'_>) {
+    fn answer(&mut self, session: &mut impl Session) {
         let Some(question) = &self.question else { return };
-        let taken = match session.decide(&Asked { question, deadline, trial: Some(self) }) {
+        let taken = match session.decide(&Asked { trial: Some(self), ..Asked::of(question) }) {
             Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),
         };

@@ -10,7 +10,8 @@ use scenario::{EmptyTasks, Moment, Scenario, Words};
 use teaming::{Deadline, Session};
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
-use usar_sim::simulation::Simulation;
+use usar_sim::scenario::{EmptyTasks, Moment, Scenario, Words};
+use usar_sim::simulation::{InTime, Simulation};
 
 use self::event_lines::EventLines;
 use self::live::Live;
@@ -166,7 +167,8 @@ fn run(
     session: &mut dyn Session,
     watch: &mut dyn FnMut(&Simulation) -> Result<(), Failure>,
 ) -> Result<TrialRecord, Failure> {
-    while simulation.step_within(&mut *session, Deadline::when(&STOP)).is_none() {
+    let mut session = InTime::new(session, Deadline::when(&STOP));
+    while simulation.step(&mut session).is_none() {
         watch(&simulation)?;
     }
     Ok(simulation.finish())

@@ -10,8 +10,8 @@ mod raw;
 
 use std::time::Instant;
 
-use scenario::Scenario;
-use teaming::{Deadline, Session};
+use teaming::Session;
+use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
 use xtask::density;
@@ -101,7 +101,7 @@ fn stages_us(scenario: &Scenario, policy: &str, steps: u64) -> ([f64; Stage::ALL
     let mut spent = [0.0; Stage::ALL.len()];
     for _ in 0..steps {
         let mut last = Instant::now();
-        let step = trial.step_watched(&mut *policy, Deadline::NEVER, |stage| {
+        let step = trial.watch(&mut *policy, |stage| {
             let now = Instant::now();
             spent[stage as usize] += (now - last).as_secs_f64();
             last = now;

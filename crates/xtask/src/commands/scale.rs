@@ -6,8 +6,6 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use scenario::Scenario;
-use teaming::Deadline;
 use usar_sim::record::Status;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
@@ -38,7 +36,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
         spent[stage as usize] += (now - last).as_secs_f64();
         last = now;
     };
-    while trial.step_watched(&mut *eng, Deadline::NEVER, &mut note).is_none() {}
+    while trial.watch(&mut *eng, &mut note).is_none() {}
     let steps = trial.steps();
     let stage = |stage: Stage| format!("{} {:.0}", stage.name(), spent[stage as usize] * 1e6 / steps as f64);
     println!("us: {}", Stage::ALL.map(stage).join(", "));
