@@ -3,7 +3,7 @@
 
 mod support;
 
-mod broken;
-mod ends;
-mod equal;
-mod lenient;
+mod error_messages;
+mod other_languages;
+mod processes;
+mod spellings;

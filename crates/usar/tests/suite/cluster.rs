@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::forged::files;
+use crate::altered_results::files;
 use crate::place::{place, refused};
 use crate::support::{read, root, succeeds, usar};
 

@@ -6,8 +6,8 @@ use std::process::Command;
 
 use experiments::experiment::Shard;
 
+use crate::altered_results::{Forged, files};
 use crate::commands::paper_text;
-use crate::forged::{Forged, files};
 use crate::support::{program, succeeds, usar};
 
 /// A folder with `short.ron`: the paper's scenario, a minute long.

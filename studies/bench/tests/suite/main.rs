@@ -4,11 +4,11 @@
 #[expect(dead_code, reason = "shared with the tests of the laboratory")]
 mod support;
 
+mod bad_problems;
 mod brute_force;
 mod depots;
 mod gaps;
 mod published;
-mod refused;
 
 /// The program of the study. That of the laboratory, which starts it, stands beside it: testing the workspace
 /// builds both.

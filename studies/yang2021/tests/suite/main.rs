@@ -4,7 +4,7 @@
 #[expect(dead_code, reason = "shared with the tests of the laboratory")]
 mod support;
 
-mod calibrated;
+mod calibrate_command;
 mod calibration;
 mod claims;
 mod readings;

@@ -5,7 +5,7 @@ use std::path::Path;
 use experiments::sweep::folder::Folder;
 use serde_json::Value;
 
-use crate::forged::files;
+use crate::altered_results::files;
 use crate::place::{column, place, refused, rows};
 use crate::support::{read, root, succeeds, usar};
 

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::forged::files;
+use crate::altered_results::files;
 use crate::place::{place, refused};
 use crate::support::{program, succeeds, usar};
 

@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use crate::forged::{files, journal};
+use crate::altered_results::{files, journal};
 use crate::place::{place, refused};
 use crate::support::{program, read, succeeds, usar};
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-use crate::forged::{files, journal};
+use crate::altered_results::{files, journal};
 use crate::place::{column, place, refused, rows};
 use crate::support::{program, succeeds, usar, usar_in};
 

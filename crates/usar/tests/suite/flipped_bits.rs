@@ -13,7 +13,7 @@ use experiments::sweep::{missing, run_trials};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use crate::forged::{Forged, cases, files};
+use crate::altered_results::{Forged, cases, files};
 use crate::place::place;
 use crate::support::{succeeds, usar};
 

@@ -22,7 +22,7 @@ use recording::{ReadError, Recording, Table};
 use reports::{Wanted, write_report};
 use serde_json::{Value, json};
 
-use crate::forged::{Forged, cases};
+use crate::altered_results::{Forged, cases};
 use crate::place::{place, refused};
 use crate::support::{succeeds, usar};
 
