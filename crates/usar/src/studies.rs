@@ -6,6 +6,7 @@ use std::process::Command;
 
 use experiments::experiment::SOURCE;
 use experiments::{Failure, refuse};
+use ron_tree::nearest;
 
 /// The studies of this project, each with what it is.
 const STUDIES: [(&str, &str); 2] = [
@@ -27,7 +28,12 @@ pub(crate) fn start(line: &[OsString], command: &clap::Command) -> Option<Result
             match (program(name), of_project(name)) {
                 (Some(file), _) => Some(run(&file, name, &line[2..])),
                 (None, Some(_)) => Some(Err(Failure::input(absent(name)))),
-                (None, None) => None,
+                (None, None) => meant(name, command).map(|study| {
+                    let absent = absent(study);
+                    Err(Failure::input(format!(
+                        "{name} is no command; did you mean `usar {study}`? {absent}"
+                    )))
+                }),
             }
         }
         _ => None,
@@ -37,6 +43,13 @@ pub(crate) fn start(line: &[OsString], command: &clap::Command) -> Option<Result
 /// The programs that are there, by their names, each with what it is.
 pub(crate) fn present() -> impl Iterator<Item = (&'static str, &'static str)> {
     STUDIES.into_iter().filter(|(name, _)| program(name).is_some())
+}
+
+/// The study that is not there and that a mistyped word means, if no command is nearer to it.
+fn meant(word: &str, command: &clap::Command) -> Option<&'static str> {
+    let names = STUDIES.map(|(study, _)| study);
+    let near = nearest(word, command.get_subcommands().map(clap::Command::get_name).chain(names))?;
+    names.into_iter().find(|study| *study == near && program(study).is_none() && !Path::new(word).exists())
 }
 
 fn of_project(name: &str) -> Option<&'static str> {

@@ -150,6 +150,39 @@ fn no_verb_starts_a_strangers_program_unasked() {
     assert!(!here.join("state").exists(), "nothing was allowed");
 }
 
+/// The program by itself, so that no program of a study stands beside it; `bench` is the study that is asked for.
+#[cfg(unix)]
+#[test]
+fn a_study_is_started_from_an_absolute_folder_and_of_the_same_sources_only() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    for place in ["alone", "bin"] {
+        std::fs::create_dir(here.join(place)).unwrap();
+    }
+    std::fs::copy(program(), here.join("alone/usar")).unwrap();
+    for file in ["usar-bench", "bin/usar-bench"] {
+        let (script, path) = ("#!/bin/sh\necho \"$@\" >> started\necho others\n", here.join(file));
+        std::fs::write(&path, script).unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let refused = |word: &str, path: &str, says: &str| {
+        let mut command = std::process::Command::new(here.join("alone/usar"));
+        let output = command.args([word, "--generate", "1"]).current_dir(here).env("PATH", path).output();
+        let output = output.unwrap();
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && stderr.contains(says), "{word} {path:?}: {stderr}");
+    };
+    let install = "bench is a program of its own: cargo install --locked --path studies/bench";
+    for path in ["", ":", ".", "bin", "bin:.:./bin:"] {
+        refused("bench", path, install);
+        refused("benhc", path, &format!("benhc is no command; did you mean `usar bench`? {install}"));
+    }
+    assert!(!here.join("started").exists(), "nothing was started");
+    refused("bench", here.join("bin").to_str().unwrap(), "was built from other sources than this program");
+    assert_eq!(read(&here.join("started")), "self source\n", "it was asked, and not started");
+}
+
 #[test]
 fn a_typed_command_is_allowed_and_an_edit_asks_again() {
     let folder = place();
