@@ -10,7 +10,6 @@ use scenario::shapes::{Outline, RadiationZone};
 use scenario::{DebrisFile, DebrisShape, Scenario};
 use usar_sim::belief::Belief;
 use usar_sim::executor::Executor;
-use usar_sim::geometry::{Outline, RadiationZone};
 use usar_sim::model::{Layout, Model};
 use usar_sim::navigation::{Goal, Navigator, Outlook};
 use usar_sim::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query};

@@ -1,7 +1,7 @@
 //! Quiet steps against the engine in every step: the same trial both ways.
 
+use scenario::Scenario;
 use usar_sim::physics::Physics;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 
 /// A trial that ran both ways.

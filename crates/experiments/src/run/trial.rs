@@ -9,7 +9,6 @@ use teaming::{Deadline, PolicyError, Session, TrialStart};
 use usar_sim::event::Event;
 use usar_sim::fit::Tables;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{InTime, Simulation};
 
 /// The reason of a trial that ended because its policy gave up at the deadline.

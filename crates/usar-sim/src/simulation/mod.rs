@@ -19,6 +19,7 @@ mod view;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
+use scenario::{LayoutError, Scenario};
 use teaming::{Asked, AssignmentError, Decision, Member, Question, Session, TrueLevels};
 use thiserror::Error;
 

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
+use scenario::LevelSource;
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
 use super::charge::{bearable, last_event, spend};
 use super::faults::Faults;
 use super::moments::Moments;
-use crate::belief::Beliefs;
+use crate::belief::{Beliefs, Holder};
 use crate::conflict::{self, Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::executor::Executor;

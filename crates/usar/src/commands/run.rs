@@ -10,7 +10,6 @@ use scenario::{EmptyTasks, Moment, Scenario, Words};
 use teaming::{Deadline, Session};
 use usar_sim::metrics::CutOff;
 use usar_sim::record::{DecisionRecord, Status, TaskRecord, TrialRecord};
-use usar_sim::scenario::{EmptyTasks, Moment, Scenario, Words};
 use usar_sim::simulation::{InTime, Simulation};
 
 use self::event_lines::EventLines;

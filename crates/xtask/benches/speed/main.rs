@@ -10,8 +10,8 @@ mod raw;
 
 use std::time::Instant;
 
+use scenario::Scenario;
 use teaming::Session;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;
 use xtask::density;

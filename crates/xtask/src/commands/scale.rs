@@ -6,6 +6,7 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
+use scenario::Scenario;
 use usar_sim::record::Status;
 use usar_sim::simulation::Simulation;
 use usar_sim::stage::Stage;

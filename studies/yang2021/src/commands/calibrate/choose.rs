@@ -1,7 +1,7 @@
 //! `--choose`: finds which of several calibrated candidates is nearest to the recorded trials.
 
 use experiments::comparison::digits;
-use usar_sim::scenario::Scenario;
+use scenario::Scenario;
 use yang2021::calibration::{CALIBRATED, Candidate, Judged, NOT_TOLD_APART, POLICY, Target, judge};
 use yang2021::table::choice_table;
 
