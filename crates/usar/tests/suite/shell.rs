@@ -20,13 +20,19 @@ fn the_short_help_has_less_than_the_long_one_and_both_have_examples() {
     }
 }
 
+/// A finding of the doctor.
+fn found(told: &serde_json::Value, what: &str) -> serde_json::Value {
+    let findings = told["tables"]["findings"].as_array().unwrap();
+    findings.iter().find(|row| row["what"] == what).unwrap()["found"].clone()
+}
+
 #[test]
 fn the_version_tells_the_commit() {
     let version = succeeds(&usar(&root(), &["--version"]));
     let expected = concat!("usar ", env!("CARGO_PKG_VERSION"));
     let rest = version.trim_end().strip_prefix(expected).unwrap_or_else(|| panic!("{version}"));
-    let doctor = &json("self doctor --json")["tables"]["findings"][0];
-    let [commit, features] = ["commit", "features"].map(|name| doctor[name].as_str().unwrap());
+    let [commit, features] = ["commit", "features"].map(|name| found(&json("self doctor --json"), name));
+    let [commit, features] = [&commit, &features].map(|text| text.as_str().unwrap());
     let commit = if commit == "unknown" { String::new() } else { format!("commit {commit}; ") };
     assert_eq!(rest, format!(" ({commit}features: {features})"));
 }
@@ -79,16 +85,16 @@ fn the_doctor_tells_whether_results_can_be_written() {
     let folder = tempfile::tempdir().unwrap();
     let here = folder.path();
     let told = succeeds(&usar(here, "self doctor --out deep/results"));
-    assert!(told.contains("writable   yes\n") && told.contains("is made by the first sweep"), "{told}");
+    assert!(told.contains("│ writable  ┆ yes ") && told.contains("is made by the first sweep"), "{told}");
     assert_eq!(std::fs::read_dir(here).unwrap().count(), 0, "nothing is left behind");
-    let findings = &json("self doctor --json")["tables"]["findings"][0];
-    assert!(findings["threads"].as_u64().unwrap() > 0);
-    assert!(findings["results"]["free_bytes"].as_u64().is_some_and(|bytes| bytes > 0), "{findings}");
+    let findings = json("self doctor --json");
+    assert!(found(&findings, "threads").as_u64().unwrap() > 0);
+    assert!(found(&findings, "free").as_u64().is_some_and(|bytes| bytes > 0), "{findings}");
     std::fs::write(here.join("file"), "").unwrap();
     let output = usar(here, "self doctor --out file --json");
     assert_eq!(output.status.code(), Some(3));
     let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(told["tables"]["findings"][0]["results"]["is_writable"], false);
+    assert_eq!(found(&told, "writable"), false);
     let message = String::from_utf8_lossy(&output.stderr);
     assert!(message.starts_with("error: results cannot be written: "), "{message}");
 }
