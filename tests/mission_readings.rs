@@ -1,5 +1,5 @@
-//! The readings of the paper's mission that are options: each does what studies/yang2021/docs/readings.md says, with every
-//! invariant checked.
+//! The readings of the paper's mission that are options: each does what studies/yang2021/docs/readings.md
+//! says, with every invariant checked.
 
 use scenario::Scenario;
 use teaming::{Asked, Decision, Policy, PolicyError, Question, TaskId};

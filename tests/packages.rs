@@ -77,7 +77,8 @@ fn only_the_door_of_the_page_is_unsafe() {
     assert!(text("lab/Cargo.toml").contains("unsafe_code = \"deny\""));
 }
 
-/// A sweep, its comparison and its report need no renderer and no format of other programs, and the first build has none.
+/// A sweep, its comparison and its report need no renderer and no format of other programs, and the first
+/// build has none.
 #[test]
 fn the_first_build_leaves_out_what_the_first_result_does_not_need() {
     let tree = [

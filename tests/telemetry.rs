@@ -239,8 +239,8 @@ fn robots_go_for_phantoms_and_do_not_know_of_hidden_radiation() {
     assert!(hidden.0 < honest.0 && hidden.0 > 0, "{honest:?} {hidden:?}");
 }
 
-/// `Truth` takes the true levels of the evidence, and bodies say what needs follow from them: together they are
-/// the members as they really were, which the record keeps beside each decision.
+/// `Truth` takes the true levels of the evidence, and bodies say what needs follow from them: together they
+/// are the members as they really were, which the record keeps beside each decision.
 #[test]
 fn the_control_has_the_levels_and_needs_of_the_truth() {
     let scenario = paper_and(
@@ -271,8 +271,8 @@ fn the_control_has_the_levels_and_needs_of_the_truth() {
     assert!(record.decisions.len() > 3 && lied > 10, "{lied}");
 }
 
-/// Shares of 1,000 teams of 6, 4 and 2 whose grouping changes when one robot says "HP 31", and the shares that
-/// an independent computation found: RNE 73 +- 4 %, HP_DIS 49 +- 5 %, ENG and DIS none.
+/// Shares of 1,000 teams of 6, 4 and 2 whose grouping changes when one robot says "HP 31", and the shares
+/// that an independent computation found: RNE 73 +- 4 %, HP_DIS 49 +- 5 %, ENG and DIS none.
 #[test]
 fn one_robot_that_says_hp_31_regroups_the_teams_that_another_computation_found() {
     let policies = ["RNE", "HP_DIS", "ENG", "DIS"];

@@ -1,4 +1,5 @@
-//! Trust between robots as *Relative Needs Entropy* (RNE): needs, their distributions, relative entropy, hierarchy.
+//! Trust between robots as *Relative Needs Entropy* (RNE): needs, their distributions, relative entropy,
+//! hierarchy.
 //!
 //! The mathematics of Yang & Parasuraman, *How Can Robots Trust Each Other For Better Cooperation?* (IEEE SMC
 //! 2021, arXiv 2105.07443), with every ambiguity of the text as a named option. This crate has no world,

@@ -34,8 +34,8 @@ pub fn is_file(path: &Path) -> bool {
     path.is_file() || carried(path).is_some()
 }
 
-/// For a word in the place of a missing file: the carried scenario that is meant, as the end of a sentence; empty
-/// if there is none.
+/// For a word in the place of a missing file: the carried scenario that is meant, as the end of a sentence;
+/// empty if there is none.
 pub(super) fn meant(path: &Path, error: &ReadError) -> String {
     let word = path.to_str().filter(|text| !text.contains(['/', '\\', '.']));
     let (Some(word), ReadError::Missing(other)) = (word, error) else { return String::new() };

@@ -55,7 +55,8 @@ pub enum Channel {
     Need(String),
 }
 
-/// A lie. Lies about a level turn the level x, in percent, into another, which lies between the floor and 100.
+/// A lie. Lies about a level turn the level x, in percent, into another, which lies between the floor and
+/// 100.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Lie {
     /// x + by (100 - x).

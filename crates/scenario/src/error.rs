@@ -79,8 +79,8 @@ impl ScenarioError {
         }
     }
 
-    /// The error of a file that another one names by this path: text of a file outside the folder of the other
-    /// is not shown, for it may be none of its reader's business.
+    /// The error of a file that another one names by this path: text of a file outside the folder of the
+    /// other is not shown, for it may be none of its reader's business.
     #[must_use]
     pub fn of_named(self, named: &str) -> Self {
         let leads_out = Path::new(named).is_absolute() || named.split(['/', '\\']).any(|part| part == "..");

@@ -7,8 +7,8 @@ use super::checker::Checker;
 use super::distribution::WORDS;
 use crate::limits;
 
-/// Limits that apply at further paths. In a path of the schema and of a file, the name of a variant may be left
-/// out.
+/// Limits that apply at further paths. In a path of the schema and of a file, the name of a variant may be
+/// left out.
 const MORE: [(&str, Limit); 24] = [
     ("team[*].count", Limit { least: 0.0, ..limits::ROBOTS }),
     ("timeline[*].event.RobotLoses.hp", limits::LOSS),

@@ -93,8 +93,8 @@ impl Default for Witness {
     }
 }
 
-/// The medium between robots and the base, and between group-mates where `mission.belief_sharing` is `ByRadio`:
-/// which messages are heard, and when. Without this section all are heard at once.
+/// The medium between robots and the base, and between group-mates where `mission.belief_sharing` is
+/// `ByRadio`: which messages are heard, and when. Without this section all are heard at once.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MediumRules {
@@ -104,7 +104,8 @@ pub struct MediumRules {
     pub loss: Loss,
     /// Time that every message takes, in seconds.
     pub delay_s: f64,
-    /// Capacity of the channel that all share, in kilobits a second; without it, no message waits for another.
+    /// Capacity of the channel that all share, in kilobits a second; without it, no message waits for
+    /// another.
     pub kbps: Option<f64>,
     /// Length of a message, in bytes.
     pub bytes: u32,

@@ -102,8 +102,8 @@ pub enum Happening {
         /// Rescuees along the width and along the height.
         grid: [u32; 2],
     },
-    /// A task begins: `TaskBegins("north")`. Before, it has no rescuees and is given no robots. If it has ended,
-    /// it is open again, but its own rescuees do not appear a second time.
+    /// A task begins: `TaskBegins("north")`. Before, it has no rescuees and is given no robots. If it has
+    /// ended, it is open again, but its own rescuees do not appear a second time.
     TaskBegins(String),
     /// A task ends: `TaskEnds("north")`. Rescuees that still wait are gone, and it is given no more robots.
     TaskEnds(String),

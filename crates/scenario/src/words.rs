@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What things are called in the names of metrics, in sentences, legends and pages. Columns of tables keep the
-/// standard names, so that one program reads all results.
+/// What things are called in the names of metrics, in sentences, legends and pages. Columns of tables keep
+/// the standard names, so that one program reads all results.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Words {

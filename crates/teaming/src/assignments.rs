@@ -1,7 +1,7 @@
 //! Every assignment that the quotas of a question allow. A policy chooses from these.
 //!
-//! If a quota binds, each task gets exactly its number of members of the role. If its numbers are the sizes of
-//! parts, any task may get any part. If it is free, any task may get any member. No robot is left idle.
+//! If a quota binds, each task gets exactly its number of members of the role. If its numbers are the sizes
+//! of parts, any task may get any part. If it is free, any task may get any member. No robot is left idle.
 
 use rand::seq::{IndexedRandom, SliceRandom};
 use rand::{Rng, RngExt};

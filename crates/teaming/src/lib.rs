@@ -2,8 +2,8 @@
 //!
 //! A [`Policy`] answers a [`Question`] with a [`Decision`]. Policies and [trust measures](TrustMeasure) have
 //! names in a [`Registry`]. Whoever asks opens a [`Session`] of a [`Driver`]; a policy is the simplest one.
-//! Where robots may be wrong or lie, an [`Estimator`] says what is true and whom to believe. This crate has no
-//! world, reads no files and no clock; the maths of trust is the crate `rne-core`.
+//! Where robots may be wrong or lie, an [`Estimator`] says what is true and whom to believe. This crate has
+//! no world, reads no files and no clock; the maths of trust is the crate `rne-core`.
 
 pub mod arrow;
 pub mod assignments;

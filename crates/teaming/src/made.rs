@@ -48,7 +48,8 @@ impl<T: ?Sized> Clone for Made<T> {
 }
 
 impl MadeMeasure {
-    /// A text that changes whenever its values may change: that of its [kind](crate::registry::Kind::from_sources).
+    /// A text that changes whenever its values may change: that of its
+    /// [kind](crate::registry::Kind::from_sources).
     #[must_use]
     pub fn fingerprint(&self) -> Option<&str> {
         self.sources.as_deref()

@@ -47,7 +47,8 @@ pub struct Question {
     /// Seed of the policy's own draws in this round.
     pub random_seed: RandomSeed,
     /// What the base heard of the robots, where reports may be late, lost, wrong or lies; absent where
-    /// everybody knows how every robot is. The state of a trial has it elsewhere, so that it is in texts only.
+    /// everybody knows how every robot is. The state of a trial has it elsewhere, so that it is in texts
+    /// only.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "evidence_of_text")]
     pub evidence: Option<Evidence>,
 }
@@ -149,8 +150,8 @@ pub struct Member {
     pub home: [f64; 2],
     /// Its needs, in the order of the table of needs.
     pub needs: NeedVector,
-    /// Battery level in percent of the robot's own maximum. Below 0 where robots go on with an empty battery; their
-    /// needs of energy are 0 then.
+    /// Battery level in percent of the robot's own maximum. Below 0 where robots go on with an empty battery;
+    /// their needs of energy are 0 then.
     pub energy_level: Option<f64>,
     /// Health level in percent of the robot's own maximum.
     pub hp_level: Option<f64>,

@@ -188,8 +188,8 @@ pub enum Event {
         /// The place, in metres.
         place: [f32; 2],
     },
-    /// The team no longer waits for a robot that does not get home or to rest, until it comes nearer; or a robot
-    /// gave up on a rescuee or an errand to which it came no nearer.
+    /// The team no longer waits for a robot that does not get home or to rest, until it comes nearer; or a
+    /// robot gave up on a rescuee or an errand to which it came no nearer.
     CutOff {
         /// The robot.
         robot: RobotId,

@@ -150,7 +150,8 @@ fn no_verb_starts_a_strangers_program_unasked() {
     assert!(!here.join("state").exists(), "nothing was allowed");
 }
 
-/// The program by itself, so that no program of a study stands beside it; `bench` is the study that is asked for.
+/// The program by itself, so that no program of a study stands beside it; `bench` is the study that is asked
+/// for.
 #[cfg(unix)]
 #[test]
 fn a_study_is_started_from_an_absolute_folder_and_of_the_same_sources_only() {
