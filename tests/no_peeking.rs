@@ -8,6 +8,8 @@ use usar_sim::event::Event;
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
 use usar_sim::navigation::Goal;
+use usar_sim::robot::ENERGY;
+use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::world::RescueeState;
 
@@ -82,8 +84,8 @@ fn the_question_has_what_robots_said_and_the_record_the_truth_beside_it() {
     let changed = asked(&|trial| trial.world_mut().robots[2].energy = 31.0); // it has not felt that yet
     assert_eq!((&honest.question, &honest.decision), (&changed.question, &changed.decision));
     assert_eq!((&honest.truth, honest.team()), (&None, honest.question.members.as_slice()));
-    let levels: Vec<_> = changed.team().iter().map(|member| member.energy_level).collect();
-    let said: Vec<_> = changed.question.members.iter().map(|member| member.energy_level).collect();
+    let levels: Vec<_> = changed.team().iter().map(|member| member.level(ENERGY)).collect();
+    let said: Vec<_> = changed.question.members.iter().map(|member| member.level(ENERGY)).collect();
     assert_eq!((levels[2], &levels[3..]), (Some(31.0), &said[3..]));
     assert!(said[2] > levels[2]);
 }

@@ -5,10 +5,11 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;
-use scenario::Scenario;
-use teaming::{Asked, Assignment, Question};
+use teaming::{Asked, Assignment, Question, Truth};
 use usar_sim::hash::PARTS;
 use usar_sim::record::TrialRecord;
+use usar_sim::robot::HP;
+use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Simulation};
 
 use crate::support::{paper_with, policy};
@@ -124,7 +125,7 @@ fn no_policy_sees_the_truth() {
     assert_eq!(full[0], empty[0]);
     let of = |question: &Question| question.members.iter().find(|member| member.id == 5).cloned();
     let never_heard = of(&full[2]).unwrap();
-    assert_eq!((never_heard.energy_level, never_heard.hp_level), (Some(80.0), Some(90.0)));
+    assert_eq!(never_heard.levels, [Some(80.0), Some(90.0)]);
     assert_eq!(of(&full[2]), of(&empty[2]), "5 points less, and nobody heard of it");
     assert_eq!(
         full[2].evidence.as_ref().map(|evidence| evidence.reports.iter().any(|report| report.of == 5)),
@@ -239,8 +240,8 @@ fn robots_go_for_phantoms_and_do_not_know_of_hidden_radiation() {
     assert!(hidden.0 < honest.0 && hidden.0 > 0, "{honest:?} {hidden:?}");
 }
 
-/// `Truth` takes the true levels of the evidence, and bodies say what needs follow from them: together they
-/// are the members as they really were, which the record keeps beside each decision.
+/// `Truth` takes the levels of the members as they really were, which the record keeps beside each decision, and
+/// bodies say what needs follow from them: together they are these members.
 #[test]
 fn the_control_has_the_levels_and_needs_of_the_truth() {
     let scenario = paper_and(
@@ -252,21 +253,29 @@ fn the_control_has_the_levels_and_needs_of_the_truth() {
     let mut lied = 0;
     for made in &record.decisions {
         let question = record.question(made);
-        let estimates = truth.it.estimate(&question).unwrap();
+        let estimates = truth.estimate(&question, Some(Truth(made.team()))).unwrap();
         for (member, found) in made.team().iter().zip(&estimates) {
-            let levels = [member.energy_level.unwrap(), member.hp_level.unwrap()];
-            assert_eq!(found.levels.map(f64::to_bits), levels.map(f64::to_bits));
+            let levels = found.levels.iter().zip(&member.levels);
+            assert!(
+                levels.clone().count() == 2
+                    && levels.clone().all(|(a, b)| a.to_bits() == b.unwrap().to_bits())
+            );
             let pairs = found.needs.values().iter().zip(member.needs.values());
             assert!(pairs.clone().all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {member:?}");
         }
         let said = last.it.estimate(&question).unwrap();
         lied += said.iter().zip(&estimates).filter(|(said, is)| said.needs != is.needs).count();
+        let untold = truth.estimate(&question, None).unwrap_err().to_string();
+        assert_eq!(untold, "Truth takes the levels of robots as they really are; here nobody knows them");
         let evidence = question.evidence.unwrap();
         assert!(evidence.bodies.len() == 12 && evidence.bodies[11].guides && !evidence.bodies[11].carries);
-        assert_eq!(
-            evidence.initial.map(|of| of.map(|of| [of.mean, of.sd])),
-            Some([[80.0, 20.0], [90.0, 10.0]])
-        );
+        let level = |level: &teaming::Level| {
+            let expected = level.expected.unwrap();
+            (level.name.clone(), level.threshold, [expected.mean, expected.sd])
+        };
+        let [energy, hp] = ["energy", "hp"].map(str::to_owned);
+        let expected = vec![(energy, 30.0, [80.0, 20.0]), (hp, 30.0, [90.0, 10.0])];
+        assert_eq!(question.levels.iter().map(level).collect::<Vec<_>>(), expected);
     }
     assert!(record.decisions.len() > 3 && lied > 10, "{lied}");
 }
@@ -330,8 +339,8 @@ fn mates_see_that_a_robot_is_slower_than_it_says() {
     let text = text.replacen('(', lies, 1).replace("duration_s: 1800.0", "duration_s: 600.0");
     let scenario = Scenario::parse(&text, "tunnel.ron".as_ref()).unwrap_or_else(|error| panic!("{error}"));
     let record = run(&scenario, "HP_DIS", 1);
-    let truly = |robot: u32| record.decisions[0].truth.as_ref().unwrap()[robot as usize].hp_level.unwrap();
-    let said = |robot: u32| record.decisions[0].question.members[robot as usize].hp_level.unwrap();
+    let truly = |robot: u32| record.decisions[0].truth.as_ref().unwrap()[robot as usize].level(HP).unwrap();
+    let said = |robot: u32| record.decisions[0].question.members[robot as usize].level(HP).unwrap();
     let liars: Vec<u32> = (0..12).filter(|robot| said(*robot) - truly(*robot) > 1.0).collect();
     assert_eq!(liars.len(), 2);
     let ratings = &record.heard.as_ref().unwrap().evidence.ratings;
@@ -347,7 +356,7 @@ fn mates_see_that_a_robot_is_slower_than_it_says() {
         assert_eq!(mean < 0.5, liars.contains(&robot), "robot {robot}: {mean}");
         let rating =
             ratings.iter().filter(|rating| rating.of == robot).max_by(|a, b| a.looks.cmp(&b.looks)).unwrap();
-        let measured = rating.measured_hp(2.25, 0.1).unwrap();
+        let measured = rating.measured_level(2.25, 0.1).unwrap();
         assert!((measured - truly(robot)).abs() < 12.0, "robot {robot}: {measured}");
     }
     assert!(seen >= 8, "{seen}");

@@ -5,9 +5,9 @@ use pyo3::types::PyDict;
 use pythonize::pythonize;
 use teaming::{Assignment, Question};
 
-/// A question as a dict: what docs/schemas/question.schema.json describes, without the truth.
+/// A question as a dict: what docs/schemas/question.schema.json describes.
 pub fn asked<'py>(py: Python<'py>, question: &Question) -> PyResult<Bound<'py, PyAny>> {
-    Ok(pythonize(py, &*question.without_truth())?)
+    Ok(pythonize(py, question)?)
 }
 
 /// The groups of an answer: a list with the ids of each task's group, or a dict with `groups` and `idle`.

@@ -40,6 +40,9 @@ pub struct Manifest {
     pub policies: Vec<String>,
     /// All options of each policy, with the defaults.
     pub policy_options: Vec<String>,
+    /// The policies that see what is true, because they declare it: as they were written.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub policies_that_see_truth: Vec<String>,
     /// Hash of the sources of each policy.
     pub policy_sources: Vec<String>,
     /// The axes.
@@ -70,6 +73,7 @@ pub(crate) fn part(shard: Option<Shard>) -> String {
 impl Manifest {
     /// The manifest of an experiment that is not complete yet.
     pub fn new(experiment: &Experiment, shard: Option<Shard>, files: Vec<FileHash>) -> Self {
+        let sees_truth = experiment.policies.iter().filter(|policy| policy.made().sees_truth());
         Self {
             schema_version: SCHEMA_VERSION,
             program: "usar".into(),
@@ -80,6 +84,7 @@ impl Manifest {
             name: experiment.name.clone(),
             policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),
             policy_options: experiment.policies.iter().map(|policy| policy.made().options.clone()).collect(),
+            policies_that_see_truth: sees_truth.map(|policy| policy.written().to_owned()).collect(),
             policy_sources: experiment.program.policies.clone(),
             axes: experiment.axes.clone(),
             trials: experiment.trials,

@@ -4,6 +4,7 @@ use crate::facts::missing;
 use crate::ranking::deal_by_rank;
 use teaming::decision::Decision;
 use teaming::error::PolicyError;
+use teaming::levels::ENERGY;
 use teaming::policy::Policy;
 use teaming::question::Question;
 use teaming::registry::PolicyKind;
@@ -27,7 +28,10 @@ impl Policy for Energy {
             question,
             "energy level",
             |level: &f64| *level,
-            |member| member.energy_level.ok_or_else(|| missing(NAME, "the energy level", Some(member.id))),
+            |member| {
+                let level = question.level_of(member, ENERGY);
+                level.ok_or_else(|| missing(NAME, "the energy level", Some(member.id)))
+            },
             |a, b| b.total_cmp(a),
         )
     }

@@ -4,6 +4,7 @@ use crate::facts::{missing, squared_distance};
 use crate::ranking::deal_by_rank;
 use teaming::decision::Decision;
 use teaming::error::PolicyError;
+use teaming::levels::HP;
 use teaming::policy::Policy;
 use teaming::question::Question;
 use teaming::registry::PolicyKind;
@@ -31,7 +32,8 @@ impl Policy for HpDistance {
             "HP level",
             |key: &(f64, f64)| key.0,
             |member| {
-                let level = member.hp_level.ok_or_else(|| missing(NAME, "the HP level", Some(member.id)))?;
+                let level = question.level_of(member, HP);
+                let level = level.ok_or_else(|| missing(NAME, "the HP level", Some(member.id)))?;
                 Ok((level, hardest.map_or(0.0, |place| squared_distance(member.home, place))))
             },
             |a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)),

@@ -3,7 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::NeedVector;
-use teaming::question::{Need, RandomSeed, SCHEMA_VERSION, hardest_first};
+use teaming::question::{Need, RandomSeed, hardest_first};
 use teaming::{GroupSizes, Member, Question, Quota, RoleId, Task};
 
 /// Robots of one role at one place, by their needs of weight 1, and tasks of these ranks without places.
@@ -13,23 +13,17 @@ pub(crate) fn with_needs(needs: &[&[f64]], difficulties: &[u32]) -> Question {
         role: RoleId(0),
         home: [0.0, 0.0],
         needs: NeedVector::new(needs.to_vec()).unwrap(),
-        energy_level: None,
-        hp_level: None,
+        levels: Vec::new(),
     };
     let task = |(number, difficulty): (usize, &u32)| Task::new(&format!("task {number}"), *difficulty);
     let order = hardest_first(difficulties.iter().copied());
     let question = Question {
-        schema_version: SCHEMA_VERSION,
-        round: 1,
         roles: vec!["role".to_owned()],
         needs: (0..needs[0].len()).map(|k| Need { name: format!("need {k}"), weight: 1.0 }).collect(),
         tasks: difficulties.iter().enumerate().map(task).collect(),
         quotas: Quota::equal(&[needs.len()], &order),
         members: (0..).zip(needs).map(member).collect(),
-        may_idle: false,
-        history: Vec::new(),
-        random_seed: RandomSeed([0; 32]),
-        evidence: None,
+        ..Question::default()
     };
     question.checked().unwrap()
 }

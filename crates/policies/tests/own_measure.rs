@@ -1,6 +1,7 @@
 //! A model for a trust measure of one's own: what it measures, its options, and its place in a registry.
 
 use serde::{Deserialize, Serialize};
+use teaming::levels::ENERGY;
 use teaming::{Assignment, MeasureKind, PolicyError, Question, TeamTrust, TrustMeasure};
 
 /// Options, with their defaults.
@@ -42,7 +43,8 @@ impl TeamTrust for InTeam<'_> {
     fn towards(&self, from: &[u32], to: &[u32]) -> Result<f64, PolicyError> {
         let mean = |group: &[u32]| {
             let members = self.question.members.iter().filter(|member| group.contains(&member.id));
-            let levels: Vec<f64> = members.filter_map(|member| member.energy_level).collect();
+            let levels: Vec<f64> =
+                members.filter_map(|member| self.question.level_of(member, ENERGY)).collect();
             levels.iter().sum::<f64>() / levels.len() as f64
         };
         let apart = (mean(from) - mean(to)).abs();
@@ -54,16 +56,17 @@ impl TeamTrust for InTeam<'_> {
 }
 
 const TEAM: &str = r#"{
-    "schema_version": 2,
+    "schema_version": 3,
     "round": 1,
     "roles": ["robot"],
     "needs": [{"name": "energy", "weight": 1.0}],
+    "levels": [{"name": "energy", "unit": "%"}],
     "tasks": [{"name": "near", "difficulty": 1}, {"name": "far", "difficulty": 2}],
     "quotas": [{"members": [1, 2], "sizes": "Parts"}],
     "members": [
-        {"id": 1, "role": 0, "home": [0.0, 0.0], "needs": [90.0], "energy_level": 90.0},
-        {"id": 2, "role": 0, "home": [2.0, 0.0], "needs": [60.0], "energy_level": 60.0},
-        {"id": 3, "role": 0, "home": [4.0, 0.0], "needs": [80.0], "energy_level": 80.0}
+        {"id": 1, "role": 0, "home": [0.0, 0.0], "needs": [90.0], "levels": [90.0]},
+        {"id": 2, "role": 0, "home": [2.0, 0.0], "needs": [60.0], "levels": [60.0]},
+        {"id": 3, "role": 0, "home": [4.0, 0.0], "needs": [80.0], "levels": [80.0]}
     ],
     "history": [],
     "random_seed": "0000000000000000000000000000000000000000000000000000000000000000"

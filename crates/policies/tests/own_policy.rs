@@ -58,7 +58,7 @@ fn registry() -> Registry {
 }
 
 const TEAM: &str = r#"{
-    "schema_version": 2,
+    "schema_version": 3,
     "round": 1,
     "roles": ["carrier"],
     "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 1.0}],

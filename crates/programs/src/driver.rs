@@ -270,7 +270,7 @@ impl ProgramSession {
         self.questions += 1;
         let id = self.questions;
         let trial = self.trial.as_ref().map(|(seed, scenario)| Trial { seed: *seed, scenario });
-        let line = Message::Question { id, trial, question: &asked.question.without_truth() }.line();
+        let line = Message::Question { id, trial, question: asked.question }.line();
         if line.len() > MOST_BYTES {
             return Err(self.lose(ProgramError::from(Complaint::LongQuestion), asked.question));
         }

@@ -8,7 +8,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::NeedVector;
 use teaming::question::hardest_first;
-use teaming::{GroupSizes, Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
+use teaming::{GroupSizes, Level, Member, Need, Question, Quota, RandomSeed, RoleId, Task};
 
 /// Names of the needs.
 const NEEDS: [&str; 4] = ["hp", "v", "eng", "cap"];
@@ -45,17 +45,15 @@ pub fn question(seed: u64) -> Question {
     };
     let quotas = (0..roles).map(|role| quota(role, &mut draws)).collect();
     let question = Question {
-        schema_version: SCHEMA_VERSION,
-        round: 1,
         roles: (0..roles).map(|role| format!("role {role}")).collect(),
         needs: NEEDS.map(|name| Need { name: name.to_owned(), weight: 1.0 }).to_vec(),
+        levels: Level::energy_and_hp(),
         tasks,
         quotas,
         members,
         may_idle: draws.random_bool(0.2),
-        history: Vec::new(),
         random_seed: RandomSeed::from(seed),
-        evidence: None,
+        ..Question::default()
     };
     question.clone().checked().unwrap_or(question) // its ids are sorted
 }
@@ -83,8 +81,7 @@ fn member(role: u16, draws: &mut ChaCha8Rng) -> Member {
         role: RoleId(role),
         home: [draws.random_range(0.0..100.0), draws.random_range(0.0..100.0)],
         needs: NeedVector::new(needs.to_vec()).expect("finite and above 0"),
-        energy_level: Some(energy),
-        hp_level: Some(hp),
+        levels: vec![Some(energy), Some(hp)],
     }
 }
 

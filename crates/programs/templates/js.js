@@ -8,12 +8,14 @@ const readline = require("node:readline");
 
 // Per role, the robots with more energy take the harder tasks; ties go to the lower id.
 function decide(question, options) {
+  const level = question.levels.findIndex((level) => level.name === "energy");
+  const energy = (robot) => robot.levels[level] ?? 0;
   const tasks = question.tasks;
   const hardestFirst = tasks.map((_, task) => task).sort((a, b) => tasks[b].difficulty - tasks[a].difficulty);
   const groups = tasks.map(() => []);
   question.quotas.forEach((quota, role) => {
     const robots = question.members.filter((robot) => robot.role === role);
-    robots.sort((a, b) => (b.energy_level ?? 0) - (a.energy_level ?? 0) || a.id - b.id);
+    robots.sort((a, b) => energy(b) - energy(a) || a.id - b.id);
     const ids = robots.map((robot) => robot.id);
     for (const task of hardestFirst) {
       groups[task].push(...ids.splice(0, quota.members[task]));
@@ -31,7 +33,7 @@ function answer() {
     if (message.type === "hello") {
       options = message.options;
       const hello = { name: "NAME", version: "0.1", deterministic: true };
-      send({ type: "hello", protocol: 1, schema_version: 2, ...hello });
+      send({ type: "hello", protocol: 1, schema_version: 3, ...hello });
     } else if (message.type === "question") {
       const groups = decide(message.question, options);
       send({ type: "decision", id: message.id, decision: { assignment: { groups } } });

@@ -7,12 +7,13 @@ using JSON
 
 "Per role, the robots with more energy take the harder tasks; ties go to the lower id."
 function decide(question, options)
+    level = findfirst(level -> level["name"] == "energy", question["levels"])
     tasks = question["tasks"]
     hardest_first = sort(collect(eachindex(tasks)); by = task -> -tasks[task]["difficulty"], alg = MergeSort)
     groups = [Int[] for _ in tasks]
     for (role, quota) in enumerate(question["quotas"])
         robots = [robot for robot in question["members"] if robot["role"] == role - 1]
-        energy(robot) = something(robot["energy_level"], 0)
+        energy(robot) = something(robot["levels"][level], 0)
         sort!(robots; by = robot -> (-energy(robot), robot["id"]))
         ids = [Int(robot["id"]) for robot in robots]
         for task in hardest_first
@@ -35,7 +36,7 @@ function answer()
         message = JSON.parse(line)
         if message["type"] == "hello"
             options = message["options"]
-            send(Dict("type" => "hello", "protocol" => 1, "schema_version" => 2,
+            send(Dict("type" => "hello", "protocol" => 1, "schema_version" => 3,
                       "name" => "NAME", "version" => "0.1", "deterministic" => true))
         elseif message["type"] == "question"
             assignment = Dict("groups" => decide(message["question"], options))

@@ -9,12 +9,13 @@ import sys
 
 def decide(question, options):
     """Per role, the robots with more energy take the harder tasks; ties go to the lower id."""
+    energy = [level["name"] for level in question["levels"]].index("energy")
     tasks = question["tasks"]
     hardest_first = sorted(range(len(tasks)), key=lambda task: -tasks[task]["difficulty"])
     groups = [[] for _ in tasks]
     for role, quota in enumerate(question["quotas"]):
         robots = [robot for robot in question["members"] if robot["role"] == role]
-        robots.sort(key=lambda robot: (-(robot["energy_level"] or 0), robot["id"]))
+        robots.sort(key=lambda robot: (-(robot["levels"][energy] or 0), robot["id"]))
         ids = [robot["id"] for robot in robots]
         for task in hardest_first:
             size = quota["members"][task]
@@ -30,7 +31,7 @@ def answer():
         if message["type"] == "hello":
             options = message["options"]
             hello = {"name": "NAME", "version": "0.1", "deterministic": True}
-            reply = {"type": "hello", "protocol": 1, "schema_version": 2, **hello}
+            reply = {"type": "hello", "protocol": 1, "schema_version": 3, **hello}
         elif message["type"] == "question":
             decision = {"assignment": {"groups": decide(message["question"], options)}}
             reply = {"type": "decision", "id": message["id"], "decision": decision}

@@ -7,13 +7,14 @@ library(jsonlite)
 
 # Per role, the robots with more energy take the harder tasks; ties go to the lower id.
 decide <- function(question, options) {
+  level <- which(vapply(question$levels, function(level) level$name == "energy", logical(1)))
   difficulty <- vapply(question$tasks, function(task) task$difficulty, numeric(1))
   groups <- rep(list(integer(0)), length(question$tasks))
   for (role in seq_along(question$quotas)) {
     size <- unlist(question$quotas[[role]]$members)
     robots <- Filter(function(robot) robot$role == role - 1, question$members)
     id <- vapply(robots, function(robot) as.integer(robot$id), integer(1))
-    energy <- vapply(robots, function(robot) as.numeric(c(robot$energy_level, 0)[1]), numeric(1))
+    energy <- vapply(robots, function(robot) as.numeric(c(robot$levels[[level]], 0)[1]), numeric(1))
     ids <- id[order(-energy, id)]
     for (task in order(-difficulty)) {
       groups[[task]] <- c(groups[[task]], head(ids, size[task]))
@@ -35,7 +36,7 @@ answer <- function() {
     message <- fromJSON(line, simplifyVector = FALSE)
     if (message$type == "hello") {
       options <- message$options
-      send(list(type = "hello", protocol = 1, schema_version = 2,
+      send(list(type = "hello", protocol = 1, schema_version = 3,
                 name = "NAME", version = "0.1", deterministic = TRUE))
     } else if (message$type == "question") {
       groups <- decide(message$question, options)

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 /// Per role, the robots with more energy take the harder tasks; ties go to the lower id.
 fn decide(question: &Value, _options: &Value) -> Vec<Vec<u64>> {
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();
+    let level = list(&question["levels"]).iter().position(|level| level["name"] == "energy");
     let tasks = list(&question["tasks"]);
     let mut hardest_first: Vec<usize> = (0..tasks.len()).collect();
     hardest_first.sort_by_key(|task| std::cmp::Reverse(tasks[*task]["difficulty"].as_u64()));
@@ -16,7 +17,7 @@ fn decide(question: &Value, _options: &Value) -> Vec<Vec<u64>> {
     for (role, quota) in list(&question["quotas"]).iter().enumerate() {
         let mut robots = list(&question["members"]);
         robots.retain(|robot| robot["role"] == role);
-        let energy = |robot: &Value| robot["energy_level"].as_f64().unwrap_or(0.0);
+        let energy = |robot: &Value| level.and_then(|level| robot["levels"][level].as_f64()).unwrap_or(0.0);
         let id = |robot: &Value| robot["id"].as_u64().unwrap_or_default();
         robots.sort_by(|a, b| energy(b).total_cmp(&energy(a)).then(id(a).cmp(&id(b))));
         let mut ids = robots.iter().map(id);
@@ -36,7 +37,7 @@ fn main() -> std::io::Result<()> {
             Some("hello") => {
                 options = message["options"].clone();
                 json!({
-                    "type": "hello", "protocol": 1, "schema_version": 2,
+                    "type": "hello", "protocol": 1, "schema_version": 3,
                     "name": "NAME", "version": env!("CARGO_PKG_VERSION"), "deterministic": true,
                 })
             }

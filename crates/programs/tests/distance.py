@@ -26,7 +26,7 @@ def decide(question):
 for line in sys.stdin:
     message = json.loads(line)
     if message["type"] == "hello":
-        reply = {"type": "hello", "protocol": 1, "schema_version": 2, "name": "distance", "version": "1"}
+        reply = {"type": "hello", "protocol": 1, "schema_version": 3, "name": "distance", "version": "1"}
     elif message["type"] == "question":
         decision = {"assignment": {"groups": decide(message["question"])}}
         reply = {"type": "decision", "id": message["id"], "decision": decision}

@@ -7,6 +7,8 @@ use scenario::{Measure, NeedFile};
 use tables::{About, Cell, Column, Columns, Csv, Kind, abouts, columns};
 use teaming::{Member, Question, TaskId};
 use usar_sim::conflict::DelayCause;
+use usar_sim::robot::{ENERGY, HP};
+use usar_sim::scenario::{Measure, NeedFile};
 
 use crate::error::ReadError;
 use crate::frame::{ACTIVITIES, CONDITIONS, Frame, GroupFrame, RescueeFrame, RobotFrame};
@@ -255,8 +257,8 @@ fn decisions<'a>(needs: &[NeedFile]) -> Columns<DecisionRow<'a>> {
         "role", Text, "", ROLE, |row| row.question.roles[row.member.role.index()].clone();
         "task", Text, "", "Task to which it was assigned.",
             |row| row.question.tasks[row.task.index()].name.clone();
-        "energy_percent", Number, "%", "Its battery level.", |row| Cell::short(row.member.energy_level);
-        "hp_percent", Number, "%", "Its health level.", |row| Cell::short(row.member.hp_level);
+        "energy_percent", Number, "%", "Its battery level.", |row| Cell::short(row.member.level(ENERGY));
+        "hp_percent", Number, "%", "Its health level.", |row| Cell::short(row.member.level(HP));
     };
     columns.extend(of_needs(needs, |row: &DecisionRow| row.member.needs.values()));
     columns

@@ -219,7 +219,7 @@ mod tests {
 
     use super::*;
     use crate::ids::RoleId;
-    use crate::question::{Member, Need, RandomSeed, SCHEMA_VERSION, Task, hardest_first};
+    use crate::question::{Member, Need, RandomSeed, Task, hardest_first};
     use rne_core::needs::NeedVector;
 
     /// A question about robots over two tasks. Only the number of robots in each role matters.
@@ -230,23 +230,18 @@ mod tests {
             role,
             home: [0.0, 0.0],
             needs: NeedVector::new(vec![1.0]).unwrap(),
-            energy_level: None,
-            hp_level: None,
+            levels: Vec::new(),
         };
         let tasks = [("hard", 2), ("easy", 1)];
         let order = hardest_first(tasks.iter().map(|task| task.1));
         Question {
-            schema_version: SCHEMA_VERSION,
-            round: 1,
             roles: (0..counts.len()).map(|role| format!("role {role}")).collect(),
             needs: vec![Need { name: "constant".to_owned(), weight: 1.0 }],
             tasks: tasks.map(|(name, difficulty)| Task::new(name, difficulty)).to_vec(),
             quotas: Quota::equal(counts, &order),
             members: (0..).zip(roles).map(member).collect(),
-            may_idle: false,
-            history: Vec::new(),
             random_seed: RandomSeed::from(1),
-            evidence: None,
+            ..Question::default()
         }
     }
 

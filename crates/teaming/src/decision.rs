@@ -120,6 +120,7 @@ impl Assignment {
 #[schemars(deny_unknown_fields)]
 pub struct Decision {
     /// Version of the JSON form: [`SCHEMA_VERSION`].
+    #[serde(deserialize_with = "crate::question::this_version")]
     pub schema_version: u32,
     /// Who goes to which task.
     pub assignment: Assignment,
@@ -329,14 +330,11 @@ impl Decision {
         if let Some(name) = names.keys().find(|name| !is_known(name)) {
             return Err(bad(format!("unknown field `{name}`, expected one of `{}`", FIELDS.join("`, `"))));
         }
+        crate::question::check_version(text)?;
         let mut decision: Self = serde_json::from_str(text).map_err(wrong)?;
         let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
         let all = std::iter::once(&mut decision.assignment).chain(others);
         all.for_each(|assignment| *assignment = std::mem::take(assignment).sorted());
-        if decision.schema_version == SCHEMA_VERSION {
-            Ok(decision)
-        } else {
-            Err(QuestionError::Version { found: decision.schema_version })
-        }
+        Ok(decision)
     }
 }

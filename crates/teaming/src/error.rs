@@ -3,12 +3,14 @@
 use rne_core::NeedsError;
 use thiserror::Error;
 
+use crate::schema::{SCHEMA_VERSION, since};
+
 /// A question that cannot be asked.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QuestionError {
     /// Another version of the JSON form.
-    #[error("schema_version must be {}, found {found}", crate::schema::SCHEMA_VERSION)]
+    #[error("schema_version must be {SCHEMA_VERSION}, found {found}{}", since(&found.to_string()))]
     Version {
         /// The version that was found.
         found: u32,
@@ -95,9 +97,25 @@ pub enum QuestionError {
         /// What is wrong with its needs.
         source: NeedsError,
     },
-    /// The body of a robot, in the evidence, cannot be used.
-    #[error("evidence: the body of robot {robot}: {reason}")]
-    Body {
+    /// A level that cannot be used.
+    #[error("level {level:?}: {reason}")]
+    Level {
+        /// The level.
+        level: String,
+        /// The rule, and what was found.
+        reason: String,
+    },
+    /// The robot that asks is none of the members.
+    #[error("asker must be one of the members, found robot {id}")]
+    Asker {
+        /// The robot.
+        id: u32,
+    },
+    /// The body of a robot, or a report, in the evidence, cannot be used.
+    #[error("evidence: {what} of robot {robot}: {reason}")]
+    Evidence {
+        /// What cannot be used.
+        what: &'static str,
         /// The robot.
         robot: u32,
         /// The rule, and what was found.
@@ -107,7 +125,7 @@ pub enum QuestionError {
     #[error("{what} of robot {id} must be a finite number of at most 1e100 in size, found {found}")]
     NotFinite {
         /// The fact.
-        what: &'static str,
+        what: String,
         /// The robot.
         id: u32,
         /// The value.
@@ -150,10 +168,10 @@ pub enum PolicyError {
         robot: Option<u32>,
     },
     /// An estimator needs a level that the question does not carry.
-    #[error("an estimate needs {what} of robot {robot}, which is missing")]
+    #[error("an estimate needs the level {level} of robot {robot}, which is missing")]
     Unestimated {
-        /// The level ("the energy level", ...).
-        what: &'static str,
+        /// The level.
+        level: String,
         /// The robot that lacks it.
         robot: u32,
     },
@@ -184,6 +202,12 @@ pub enum PolicyError {
     #[error("{policy} plays each assignment in the trial that asks; here is no trial")]
     NoTrial {
         /// Name of the policy.
+        policy: String,
+    },
+    /// The policy takes what is true, and is asked where nobody tells it.
+    #[error("{policy} takes the levels of robots as they really are; here nobody knows them")]
+    NoTruth {
+        /// Name of the policy or the estimator.
         policy: String,
     },
     /// The policy is one of another program.

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::PolicyError;
 use crate::evidence::{Body, Evidence};
+use crate::levels::Level;
 use crate::question::{Member, Question};
+use crate::session::Truth;
 use rne_core::needs::NeedVector;
 
 /// A way to judge the evidence of a question.
@@ -20,6 +22,19 @@ pub trait Estimator: Send + Sync {
     /// # Errors
     /// The question lacks a fact that the estimator needs.
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError>;
+
+    /// Whether it is a control that takes what is true.
+    fn needs_truth(&self) -> bool {
+        false
+    }
+
+    /// The same of an estimator that [needs the truth](Estimator::needs_truth). No other is told it.
+    ///
+    /// # Errors
+    /// Those of [`Estimator::estimate`].
+    fn estimate_with(&self, question: &Question, _truth: Truth<'_>) -> Result<Vec<Estimate>, PolicyError> {
+        self.estimate(question)
+    }
 
     /// The least number of raters that each robot must have for it to hold what it promises.
     fn least_raters(&self) -> Option<u32> {
@@ -37,10 +52,10 @@ pub trait Estimator: Send + Sync {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Estimate {
-    /// Levels of energy and health, in percent.
-    pub levels: [f64; 2],
-    /// Standard deviations of the levels, in percent points.
-    pub sd: [f64; 2],
+    /// Its levels, in the order of the table of levels.
+    pub levels: Vec<f64>,
+    /// Standard deviations of the levels.
+    pub sd: Vec<f64>,
     /// Needs, in the order of the table of needs.
     pub needs: NeedVector,
     /// How far the robot is believed, from 0 to 1.
@@ -56,10 +71,10 @@ impl Estimate {
     pub fn of_levels(
         member: &Member,
         evidence: &Evidence,
-        levels: [f64; 2],
-        sd: [f64; 2],
+        levels: Vec<f64>,
+        sd: Vec<f64>,
     ) -> Result<Self, PolicyError> {
-        let needs = needs_at(member, evidence.body(member.id), levels)?;
+        let needs = needs_at(member, evidence.body(member.id), &levels)?;
         Ok(Self { levels, sd, needs, trust: 1.0 })
     }
 }
@@ -67,20 +82,21 @@ impl Estimate {
 /// The members as they are: what the question says of them, believed.
 ///
 /// # Errors
-/// The question does not have both levels of a member.
+/// The question does not have all levels of a member.
 pub fn as_said(question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+    let of_member = |member: &Member| {
+        let missing =
+            |level: &Level| PolicyError::Unestimated { level: level.name.clone(), robot: member.id };
+        let levels = question.levels.iter().zip(&member.levels);
+        let levels = levels.map(|(level, value)| value.ok_or_else(|| missing(level)));
+        let levels = levels.collect::<Result<Vec<_>, _>>()?;
+        Ok(Estimate { sd: vec![0.0; levels.len()], levels, needs: member.needs.clone(), trust: 1.0 })
+    };
     question.members.iter().map(of_member).collect()
 }
 
-fn of_member(member: &Member) -> Result<Estimate, PolicyError> {
-    let missing = |what| PolicyError::Unestimated { what, robot: member.id };
-    let energy = member.energy_level.ok_or_else(|| missing("the energy level"))?;
-    let health = member.hp_level.ok_or_else(|| missing("the HP level"))?;
-    Ok(Estimate { levels: [energy, health], sd: [0.0; 2], needs: member.needs.clone(), trust: 1.0 })
-}
-
 /// The needs of a member at these levels, in percent. Those that follow from no level stay.
-fn needs_at(member: &Member, body: Option<&Body>, levels: [f64; 2]) -> Result<NeedVector, PolicyError> {
+fn needs_at(member: &Member, body: Option<&Body>, levels: &[f64]) -> Result<NeedVector, PolicyError> {
     let mut needs = member.needs.values().to_vec();
     for follows in body.into_iter().flat_map(|body| &body.needs) {
         if let Some(need) = needs.get_mut(follows.need.index()) {

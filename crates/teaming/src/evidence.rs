@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::error::QuestionError;
-use crate::ids::{NeedId, place_of};
+use crate::ids::{LevelId, NeedId, place_of};
 
 /// Rounds for which ratings are kept.
 pub const ROUNDS_OF_RATINGS: u32 = 64;
@@ -20,14 +20,6 @@ pub const DOUBTED_POINTS: f64 = 10.0;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Evidence {
-    /// The battery level below which a robot rests, in percent.
-    pub energy_threshold: f64,
-    /// The health level below which a robot rests, in percent.
-    #[serde(default)]
-    pub hp_threshold: f64,
-    /// Whether a rest fills only the lower level of the two, and not both.
-    #[serde(default)]
-    pub rest_fills_one: bool,
     /// What robots said of themselves.
     pub reports: Vec<LevelReport>,
     /// What robots saw of their group-mates, in the last [`ROUNDS_OF_RATINGS`] rounds.
@@ -41,34 +33,6 @@ pub struct Evidence {
     /// What follows from the levels of each robot, by id.
     #[serde(default)]
     pub bodies: Vec<Body>,
-    /// What the base expects of energy and of health before the first report; absent where it expects
-    /// nothing.
-    #[serde(default)]
-    pub initial: Option<[Expected; 2]>,
-    /// The levels of each robot as they really are, by id. It is for a control that needs no report; no
-    /// policy may look at it.
-    #[serde(default)]
-    pub truth: Vec<TrueLevels>,
-}
-
-/// One of the two levels of a robot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub enum Level {
-    /// The battery level.
-    Energy,
-    /// The health level.
-    Health,
-}
-
-impl Level {
-    /// Its place in pairs of levels: energy comes first.
-    #[must_use]
-    pub fn index(self) -> usize {
-        match self {
-            Self::Energy => 0,
-            Self::Health => 1,
-        }
-    }
 }
 
 /// What the base knows of a robot's body, whatever the robot says.
@@ -77,9 +41,11 @@ impl Level {
 pub struct Body {
     /// The robot.
     pub robot: u32,
-    /// Top speed at full health, in metres per second.
+    /// Top speed, in metres per second.
     pub top_mps: f64,
-    /// Share of its top speed that it has at 0 % health.
+    /// The level that slows it when it falls.
+    pub slowed_by: LevelId,
+    /// Share of its top speed that it has where that level is 0 %.
     pub floor: f64,
     /// Whether it can carry rescuees.
     pub carries: bool,
@@ -91,7 +57,7 @@ pub struct Body {
 
 impl Body {
     /// The rule that the body breaks, if any, with what was found.
-    fn fault(&self, needs: usize) -> Option<String> {
+    fn fault(&self, needs: usize, levels: usize) -> Option<String> {
         let Self { top_mps, floor, .. } = self;
         if !(top_mps.is_finite() && *top_mps > 0.0) {
             return Some(format!("top_mps must be a number above 0, found {top_mps}"));
@@ -102,6 +68,12 @@ impl Body {
         let unknown = self.needs.iter().map(|need| need.need.index()).find(|need| *need >= needs);
         if let Some(found) = unknown {
             return Some(format!("need must be a row of the table of {needs} needs (from 0), found {found}"));
+        }
+        let mut used = self.needs.iter().map(|need| need.level).chain([self.slowed_by]);
+        if let Some(LevelId(found)) = used.find(|level| level.index() >= levels) {
+            return Some(format!(
+                "a level must be a row of the table of {levels} levels (from 0), found {found}"
+            ));
         }
         let values = self.needs.iter().flat_map(|need| [need.at_0, need.at_100]);
         let bad = values.into_iter().find(|value| !(value.is_finite() && *value >= 0.0));
@@ -116,7 +88,7 @@ pub struct LevelNeed {
     /// The need.
     pub need: NeedId,
     /// The level that it follows from.
-    pub level: Level,
+    pub level: LevelId,
     /// Its value at 0 %.
     pub at_0: f64,
     /// Its value at 100 %.
@@ -126,31 +98,9 @@ pub struct LevelNeed {
 impl LevelNeed {
     /// Its value at these levels, in percent. Levels outside 0 to 100 % count as the nearer end.
     #[must_use]
-    pub fn at(&self, levels: [f64; 2]) -> f64 {
+    pub fn at(&self, levels: &[f64]) -> f64 {
         self.at_0 + (self.at_100 - self.at_0) * (levels[self.level.index()] / 100.0).clamp(0.0, 1.0)
     }
-}
-
-/// What is expected of a level.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Expected {
-    /// Its mean, in percent.
-    pub mean: f64,
-    /// Its standard deviation, in percent points.
-    pub sd: f64,
-}
-
-/// The levels of a robot as they really are.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TrueLevels {
-    /// The robot.
-    pub robot: u32,
-    /// Battery level, in percent.
-    pub energy_level: f64,
-    /// Health level, in percent.
-    pub hp_level: f64,
 }
 
 /// What a robot said of its levels.
@@ -167,15 +117,13 @@ pub struct LevelReport {
     pub sent_s: f64,
     /// When it was heard, in seconds.
     pub heard_s: f64,
-    /// Battery level, in percent.
-    pub energy_level: f64,
-    /// Health level, in percent.
-    pub hp_level: f64,
+    /// Its levels, in the order of the table of levels.
+    pub levels: Vec<f64>,
     /// Needs that were said by themselves, by their places in the table; the others follow from the levels.
     #[serde(default)]
     pub needs: BTreeMap<usize, f64>,
-    /// Standard deviations of the gauges of energy and health, in percent points.
-    pub sd: [f64; 2],
+    /// Standard deviations of the gauges of the levels, in percent points.
+    pub sd: Vec<f64>,
 }
 
 /// What a robot says of the speed of a group-mate in a round.
@@ -235,13 +183,6 @@ pub struct Extent {
 }
 
 impl Evidence {
-    /// The extent of all of it in a round, with these robots known since.
-    #[must_use]
-    pub fn extent(&self, round: u32, known_since: BTreeMap<u32, u32>) -> Extent {
-        let Self { reports, ratings, ledger, .. } = self;
-        Extent { round, reports: reports.len(), ratings: ratings.len(), ledger: ledger.len(), known_since }
-    }
-
     /// What of the evidence a question of this extent has.
     #[must_use]
     pub fn as_of(&self, extent: &Extent) -> Self {
@@ -252,26 +193,25 @@ impl Evidence {
         let both = |rating: &&Rating| names(rating.by, rating.round) && names(rating.of, rating.round);
         let ledger = self.ledger[..extent.ledger].iter();
         Self {
-            energy_threshold: self.energy_threshold,
-            hp_threshold: self.hp_threshold,
-            rest_fills_one: self.rest_fills_one,
             reports: reports.filter(|report| names(report.of, report.round)).cloned().collect(),
             ratings: ratings.filter(is_recent).filter(both).copied().collect(),
             ledger: ledger.filter(|entry| names(entry.robot, entry.round)).copied().collect(),
             known_since: extent.known_since.clone(),
             bodies: self.bodies.clone(),
-            initial: self.initial,
-            truth: self.truth.clone(),
         }
     }
 
-    /// Sorts the bodies and the true levels by their ids, and checks the bodies.
-    pub(crate) fn check(&mut self, needs: usize) -> Result<(), QuestionError> {
+    /// Sorts the bodies by their ids, and checks them and the lengths of the reports.
+    pub(crate) fn check(&mut self, needs: usize, levels: usize) -> Result<(), QuestionError> {
         self.bodies.sort_by_key(|body| body.robot);
-        self.truth.sort_by_key(|levels| levels.robot);
-        let mut reasons = self.bodies.iter().filter_map(|body| Some((body.robot, body.fault(needs)?)));
-        match reasons.next() {
-            Some((robot, reason)) => Err(QuestionError::Body { robot, reason }),
+        let mut bodies =
+            self.bodies.iter().filter_map(|body| Some(("the body", body.robot, body.fault(needs, levels)?)));
+        let mut reports = self.reports.iter().filter_map(|report| {
+            let found = [report.levels.len(), report.sd.len()].into_iter().find(|found| *found != levels)?;
+            Some(("a report", report.of, format!("levels and sd must have {levels} entries, found {found}")))
+        });
+        match bodies.next().or_else(|| reports.next()) {
+            Some((what, robot, reason)) => Err(QuestionError::Evidence { what, robot, reason }),
             None => Ok(()),
         }
     }
@@ -293,16 +233,16 @@ impl RobotRound {
 
 impl Rating {
     /// How well the speed seen agrees with the speed that was said: 1 if they are equal, 0 from `tolerance`
-    /// of the rated robot's top speed at full health (metres per second) away on.
+    /// of the rated robot's top speed (metres per second) away on.
     #[must_use]
     pub fn outcome(&self, tolerance: f64, top_mps: f64) -> f64 {
         1.0 - ((self.speed_mps - self.said_mps).abs() / (tolerance * top_mps)).min(1.0)
     }
 
-    /// The health level that the speed seen speaks for, in percent: a robot of this top speed at full health
-    /// is as slow as `floor` times it at 0 %. `None` if health does not slow robots.
+    /// The level that the speed seen speaks for, in percent: a robot of this top speed at a full level is as
+    /// slow as `floor` times it at 0 %. `None` if no level slows the robot.
     #[must_use]
-    pub fn measured_hp(&self, top_mps: f64, floor: f64) -> Option<f64> {
+    pub fn measured_level(&self, top_mps: f64, floor: f64) -> Option<f64> {
         let level = 100.0 * (self.speed_mps / top_mps - floor) / (1.0 - floor);
         (floor < 1.0).then(|| level.clamp(0.0, 100.0))
     }
@@ -318,7 +258,7 @@ pub fn is_named(known_since: &BTreeMap<u32, u32>, robot: u32, round: u32) -> boo
 mod tests {
     use super::*;
 
-    fn report(of: u32, round: u32, energy_level: f64) -> LevelReport {
+    fn report(of: u32, round: u32, energy: f64) -> LevelReport {
         let (sent_s, heard_s) = (f64::from(round), f64::from(round));
         LevelReport {
             of,
@@ -326,10 +266,9 @@ mod tests {
             round,
             sent_s,
             heard_s,
-            energy_level,
-            hp_level: 90.0,
+            levels: vec![energy, 90.0],
             needs: BTreeMap::new(),
-            sd: [0.0; 2],
+            sd: vec![0.0; 2],
         }
     }
 
@@ -342,8 +281,8 @@ mod tests {
     fn a_rating_compares_speeds() {
         let rating = Rating { by: 0, of: 1, round: 1, looks: 30, speed_mps: 1.6, said_mps: 1.9 };
         assert!((rating.outcome(0.2, 2.0) - 0.25).abs() < 1e-12);
-        assert!((rating.measured_hp(2.0, 0.5).unwrap() - 60.0).abs() < 1e-12);
-        assert_eq!(rating.measured_hp(2.0, 1.0), None);
+        assert!((rating.measured_level(2.0, 0.5).unwrap() - 60.0).abs() < 1e-12);
+        assert_eq!(rating.measured_level(2.0, 1.0), None);
         assert!(rating.outcome(0.2, 1.0).abs() < 1e-12);
     }
 
@@ -356,9 +295,9 @@ mod tests {
             ledger: vec![entry(0, false), entry(1, false)],
             ..Evidence::default()
         };
-        let all = evidence.extent(2, BTreeMap::new());
+        let all = Extent { round: 2, reports: 3, ratings: 3, ledger: 2, known_since: BTreeMap::new() };
         assert_eq!(evidence.as_of(&all), evidence);
-        let late = evidence.extent(66, BTreeMap::new());
+        let late = Extent { round: 66, ..all.clone() };
         assert!(evidence.as_of(&late).ratings.is_empty(), "older than 64 rounds");
         let renamed = Extent { reports: 2, known_since: BTreeMap::from([(0, 2)]), ..all };
         let found = evidence.as_of(&renamed);

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use crate::decision::Decision;
 use crate::error::PolicyError;
-use crate::estimate::Estimator;
 use crate::made::{MadeEstimator, MadePolicy};
 use crate::session::{Asked, Basis, Driver, Session, TrialStart};
 use crate::trust_use::TrustUse;
@@ -24,13 +23,17 @@ pub struct Guided {
 
 impl Driver for Guided {
     fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
-        let (label, estimator) = (self.label.clone(), Arc::clone(&self.estimator.it));
+        let (label, estimator) = (self.label.clone(), self.estimator.clone());
         let rule = self.rule.open()?;
         Ok(Box::new(GuidedSession { label, rule, estimator, trust_use: self.trust_use }))
     }
 
     fn basis(&self) -> Basis {
         self.rule.it.basis()
+    }
+
+    fn needs_truth(&self) -> bool {
+        self.estimator.it.needs_truth() || self.rule.it.needs_truth()
     }
 
     fn needs_trial(&self) -> bool {
@@ -72,7 +75,7 @@ impl Driver for Guided {
 struct GuidedSession {
     label: String,
     rule: Box<dyn Session>,
-    estimator: Arc<dyn Estimator>,
+    estimator: MadeEstimator,
     trust_use: TrustUse,
 }
 
@@ -90,7 +93,7 @@ impl Session for GuidedSession {
         if self.trust_use.leaves_idle() && !question.may_idle {
             return Err(PolicyError::MayNotIdle { policy: self.label.clone() });
         }
-        let estimates = self.estimator.estimate(question)?;
+        let estimates = self.estimator.estimate(question, asked.truth)?;
         let believed = Some(estimates.clone());
         let judged = self.trust_use.judged(question, estimates)?;
         let mut decision = self.rule.decide(&Asked { question: &judged.question, ..*asked })?;

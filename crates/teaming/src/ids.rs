@@ -30,6 +30,10 @@ row_id!(
     RoleId
 );
 row_id!(
+    /// A level: its row in the table of levels, and its place in every list of levels.
+    LevelId
+);
+row_id!(
     /// A need: its row in the table of needs, and its place in every needs vector.
     NeedId
 );

@@ -14,6 +14,7 @@ pub mod evidence;
 pub mod guided;
 pub mod history;
 pub mod ids;
+pub mod levels;
 pub mod made;
 pub mod measure;
 pub mod nested;
@@ -30,11 +31,10 @@ pub mod trust_use;
 pub use decision::{Account, Alternative, Assignment, Decision};
 pub use error::{AssignmentError, PolicyError, QuestionError};
 pub use estimate::{Estimate, Estimator};
-pub use evidence::{
-    Body, Evidence, Expected, Extent, Level, LevelNeed, LevelReport, Rating, RobotRound, TrueLevels,
-};
+pub use evidence::{Body, Evidence, Extent, LevelNeed, LevelReport, Rating, RobotRound};
 pub use history::{GroupOutcome, MemberOutcome, RoundOutcome};
-pub use ids::{NeedId, RoleId, TaskId};
+pub use ids::{LevelId, NeedId, RoleId, TaskId};
+pub use levels::{Expected, Level, Rest};
 pub use made::{Made, MadeEstimator, MadeMeasure, MadePolicy};
 pub use measure::{NeedPart, TeamTrust, TrustMeasure};
 pub use policy::Policy;
@@ -42,5 +42,5 @@ pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA
 pub use registry::{EstimatorKind, Kind, Makes, MeasureKind, PolicyKind, Registry};
 pub use registry_error::RegistryError;
 pub use said::{EnergyOutcome, SaidRounds, Used};
-pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};
+pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart, Truth};
 pub use trust_use::TrustUse;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use crate::decision::Decision;
 use crate::error::PolicyError;
-use crate::estimate::Estimator;
+use crate::estimate::{Estimate, Estimator};
 use crate::measure::TrustMeasure;
 use crate::question::Question;
-use crate::session::{Asked, Driver, Session};
+use crate::session::{Asked, Declared, Driver, Session, Truth};
 
 /// A policy as it was requested.
 pub type MadePolicy = Made<dyn Driver>;
@@ -57,6 +57,21 @@ impl MadeMeasure {
 }
 
 impl MadeEstimator {
+    /// An estimate of each member. The truth is told to an estimator that needs it, and to no other.
+    ///
+    /// # Errors
+    /// Those of [`Estimator::estimate`].
+    pub fn estimate(
+        &self,
+        question: &Question,
+        truth: Option<Truth<'_>>,
+    ) -> Result<Vec<Estimate>, PolicyError> {
+        match truth.filter(|_| self.it.needs_truth()) {
+            Some(truth) => self.it.estimate_with(question, truth),
+            None => self.it.estimate(question),
+        }
+    }
+
     /// A text that changes whenever its answers may change: that of the [estimator](Estimator::fingerprint),
     /// or else that of the [kind](crate::registry::Kind::from_sources).
     #[must_use]
@@ -71,7 +86,8 @@ impl MadePolicy {
     /// # Errors
     /// The session cannot be opened.
     pub fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
-        self.it.open()
+        let it = self.it.open()?;
+        Ok(Box::new(Declared { it, needs_truth: self.it.needs_truth(), needs_trial: self.it.needs_trial() }))
     }
 
     /// The same policy under the label that it has in tables.
@@ -87,8 +103,14 @@ impl MadePolicy {
     ///
     /// # Errors
     /// The session cannot be opened, or the question cannot be answered.
-    pub fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
-        self.open()?.decide(&Asked::of(question))
+    pub fn decide<'a>(&self, asked: impl Into<Asked<'a>>) -> Result<Decision, PolicyError> {
+        self.open()?.decide(&asked.into())
+    }
+
+    /// Whether it gets to see what is true: by the truth that it is told, or by the trial that it plays on.
+    #[must_use]
+    pub fn sees_truth(&self) -> bool {
+        self.it.needs_truth() || self.it.needs_trial()
     }
 
     /// A text that changes whenever its answers may change: that of the [driver](Driver::fingerprint), or

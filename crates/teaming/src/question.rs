@@ -4,14 +4,15 @@
 //! A question is complete: a policy is a function of its question, and random draws come from the question
 //! too. Its JSON form is documented in `docs/decisions.md`.
 
-use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::de::Error;
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 pub use crate::schema::{MAX_TASKS, SCHEMA_VERSION};
 
@@ -19,20 +20,32 @@ use crate::error::QuestionError;
 use crate::evidence::Evidence;
 use crate::history::RoundOutcome;
 use crate::ids::{RoleId, TaskId, rows};
+use crate::levels::{Level, Rest};
 use rne_core::needs::{NeedVector, check_length};
 
 /// A team to be grouped.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Question {
     /// Version of the JSON form: [`SCHEMA_VERSION`].
+    #[serde(deserialize_with = "this_version")]
     pub schema_version: u32,
     /// Number of the round, from 1.
     pub round: u32,
+    /// The robot that asks, one of the members, where robots decide among themselves; absent where the base
+    /// asks. It may be left out of no team that it asks about.
+    #[serde(default)]
+    pub asker: Option<u32>,
     /// Names of the roles, in the order of their table.
     pub roles: Vec<String>,
     /// The needs that members report, in the order of their table.
     pub needs: Vec<Need>,
+    /// The levels that members have, in the order of their table.
+    #[serde(default)]
+    pub levels: Vec<Level>,
+    /// What a rest fills.
+    #[serde(default)]
+    pub rest: Rest,
     /// The tasks, in the order of their table.
     pub tasks: Vec<Task>,
     /// For each role, how many members each task gets.
@@ -47,15 +60,69 @@ pub struct Question {
     /// Seed of the policy's own draws in this round.
     pub random_seed: RandomSeed,
     /// What the base heard of the robots, where reports may be late, lost, wrong or lies; absent where
-    /// everybody knows how every robot is. The state of a trial has it elsewhere, so that it is in texts
-    /// only.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "evidence_of_text")]
+    /// everybody knows how every robot is. The state of a trial has it elsewhere, so that it is in texts only.
+    #[serde(default, deserialize_with = "evidence_of_text")]
     pub evidence: Option<Evidence>,
+}
+
+/// Reads the version, which stands before what differs between versions.
+pub(crate) fn this_version<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    let found = u32::deserialize(deserializer)?;
+    if found == SCHEMA_VERSION { Ok(found) } else { Err(D::Error::custom(QuestionError::Version { found })) }
 }
 
 /// Reads evidence from a text; in bytes it is never written.
 fn evidence_of_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Evidence>, D::Error> {
     if deserializer.is_human_readable() { Option::deserialize(deserializer) } else { Ok(None) }
+}
+
+impl Default for Question {
+    /// A question about nobody, to be filled in.
+    fn default() -> Self {
+        Self {
+            schema_version: SCHEMA_VERSION,
+            round: 1,
+            asker: None,
+            roles: Vec::new(),
+            needs: Vec::new(),
+            levels: Vec::new(),
+            rest: Rest::All,
+            tasks: Vec::new(),
+            quotas: Vec::new(),
+            members: Vec::new(),
+            may_idle: false,
+            history: Vec::new(),
+            random_seed: RandomSeed::default(),
+            evidence: None,
+        }
+    }
+}
+
+impl Serialize for Question {
+    /// What is absent is left out of texts, and evidence of bytes.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let is_text = serializer.is_human_readable();
+        let mut fields = serializer.serialize_struct("Question", 14)?;
+        fields.serialize_field("schema_version", &self.schema_version)?;
+        fields.serialize_field("round", &self.round)?;
+        if !is_text || self.asker.is_some() {
+            fields.serialize_field("asker", &self.asker)?;
+        }
+        fields.serialize_field("roles", &self.roles)?;
+        fields.serialize_field("needs", &self.needs)?;
+        fields.serialize_field("levels", &self.levels)?;
+        fields.serialize_field("rest", &self.rest)?;
+        fields.serialize_field("tasks", &self.tasks)?;
+        fields.serialize_field("quotas", &self.quotas)?;
+        fields.serialize_field("members", &self.members)?;
+        fields.serialize_field("may_idle", &self.may_idle)?;
+        fields.serialize_field("history", &self.history)?;
+        fields.serialize_field("random_seed", &self.random_seed)?;
+        if let Some(evidence) = self.evidence.as_ref().filter(|_| is_text) {
+            fields.serialize_field("evidence", evidence)?;
+        }
+        fields.end()
+    }
 }
 
 /// A need that members report.
@@ -150,15 +217,14 @@ pub struct Member {
     pub home: [f64; 2],
     /// Its needs, in the order of the table of needs.
     pub needs: NeedVector,
-    /// Battery level in percent of the robot's own maximum. Below 0 where robots go on with an empty battery;
-    /// their needs of energy are 0 then.
-    pub energy_level: Option<f64>,
-    /// Health level in percent of the robot's own maximum.
-    pub hp_level: Option<f64>,
+    /// Its levels, in the order of the table of levels; null where one is not known. That of the battery is
+    /// below 0 where robots go on with an empty one; their needs of energy are 0 then.
+    #[serde(default)]
+    pub levels: Vec<Option<f64>>,
 }
 
 /// Seed of a policy's draws: 32 bytes, in JSON 64 hexadecimal digits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "String", into = "String")]
 pub struct RandomSeed(#[schemars(with = "String")] pub [u8; 32]);
 
@@ -218,6 +284,7 @@ impl Question {
         if let Some(need) = self.needs.iter().find(|need| !need.weight.is_finite() || need.weight < 0.0) {
             return Err(QuestionError::Weight { need: need.name.clone(), found: need.weight });
         }
+        self.levels.iter().try_for_each(Level::check)?;
         let mut ids = BTreeSet::new();
         for member in &self.members {
             if !ids.insert(member.id) {
@@ -225,9 +292,12 @@ impl Question {
             }
             self.check_member(member)?;
         }
+        if let Some(id) = self.asker.filter(|asker| !ids.contains(asker)) {
+            return Err(QuestionError::Asker { id });
+        }
         self.check_quotas()?;
         if let Some(evidence) = &mut self.evidence {
-            evidence.check(self.needs.len())?;
+            evidence.check(self.needs.len(), self.levels.len())?;
         }
         Ok(self)
     }
@@ -258,16 +328,12 @@ impl Question {
             return Err(QuestionError::Role { id, found: member.role.0, roles: self.roles.len() });
         }
         check_length("needs", self.needs.len(), member.needs.values().len())
+            .and_then(|()| check_length("levels", self.levels.len(), member.levels.len()))
             .map_err(|source| QuestionError::Needs { id, source })?;
-        let facts = [
-            ("x", Some(member.home[0])),
-            ("y", Some(member.home[1])),
-            ("energy_level", member.energy_level),
-            ("hp_level", member.hp_level),
-        ];
-        let infinite = |(what, value): (_, Option<f64>)| Some((what, value.filter(|v| !is_usable(*v))?));
-        match facts.into_iter().find_map(infinite) {
-            Some((what, found)) => Err(QuestionError::NotFinite { what, id, found }),
+        let levels = self.levels.iter().map(|level| level.name.as_str()).zip(member.levels.iter().copied());
+        let mut facts = ["x", "y"].into_iter().zip(member.home.map(Some)).chain(levels);
+        match facts.find_map(|(what, value)| Some((what, value.filter(|v| !is_usable(*v))?))) {
+            Some((what, found)) => Err(QuestionError::NotFinite { what: what.to_owned(), id, found }),
             None => Ok(()),
         }
     }
@@ -292,24 +358,12 @@ impl Question {
     /// # Errors
     /// Text that is not the JSON of a question, or a question that [`Question::checked`] refuses.
     pub fn from_json(text: &str) -> Result<Self, QuestionError> {
+        check_version(text)?;
         let question: Self = serde_json::from_str(text).map_err(|error| QuestionError::Json {
             what: "question",
             reason: ron_tree::without_types(&error),
         })?;
         question.checked()
-    }
-
-    /// The question without the truth that controls need: as others are asked, who must not see it.
-    #[must_use]
-    pub fn without_truth(&self) -> Cow<'_, Self> {
-        match &self.evidence {
-            Some(evidence) if !evidence.truth.is_empty() => {
-                let mut asked = self.clone();
-                asked.evidence.iter_mut().for_each(|evidence| evidence.truth.clear());
-                Cow::Owned(asked)
-            }
-            _ => Cow::Borrowed(self),
-        }
     }
 
     /// The ids of all roles, in the order of their table.
@@ -343,6 +397,20 @@ impl Question {
     #[must_use]
     pub fn draws(&self) -> ChaCha8Rng {
         ChaCha8Rng::from_seed(self.random_seed.0)
+    }
+}
+
+/// Checks the version of a text before its fields, which differ between versions.
+pub(crate) fn check_version(text: &str) -> Result<(), QuestionError> {
+    #[derive(Deserialize)]
+    struct Versioned {
+        schema_version: u32,
+    }
+    match serde_json::from_str(text) {
+        Ok(Versioned { schema_version: found }) if found != SCHEMA_VERSION => {
+            Err(QuestionError::Version { found })
+        }
+        _ => Ok(()),
     }
 }
 

@@ -4,6 +4,8 @@
 use crate::evidence::{DOUBTED_POINTS, Evidence, RobotRound};
 use crate::history::RoundOutcome;
 use crate::ids::place_of;
+use crate::levels::ENERGY;
+use crate::question::Question;
 
 /// Two times that differ by less than this are the same, in seconds: one of them comes from a subtraction.
 pub const SAME_MOMENT_S: f64 = 1e-6;
@@ -11,7 +13,9 @@ pub const SAME_MOMENT_S: f64 = 1e-6;
 /// The evidence of the rounds that are over, by robot and round.
 #[derive(Debug, Clone)]
 pub struct SaidRounds<'e> {
-    energy_threshold: f64,
+    /// The place of the battery in lists of levels, and its threshold.
+    energy: Option<(usize, f64)>,
+    levels: usize,
     /// The robots of the ledger, ascending.
     robots: Vec<u32>,
     /// The rounds of the ledger and those after them, ascending.
@@ -23,18 +27,17 @@ pub struct SaidRounds<'e> {
 #[derive(Debug, Clone, Copy, Default)]
 struct Cell<'e> {
     /// The levels that it said when the round began.
-    first: Option<[f64; 2]>,
+    first: Option<&'e [f64]>,
     entry: Option<&'e RobotRound>,
 }
 
 /// What the group-mates of a robot said that they spent in a round.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Used {
     /// The robot.
     pub robot: u32,
-    /// The median fall of energy and of health, in percent points; absent where no mate came back with its
-    /// group.
-    pub points: Option<[f64; 2]>,
+    /// The median fall of each level, in percent points; absent where no mate came back with its group.
+    pub points: Option<Vec<f64>>,
 }
 
 /// How far the base believes what a robot said of its energy in a round.
@@ -49,9 +52,9 @@ pub struct EnergyOutcome {
 }
 
 impl<'e> SaidRounds<'e> {
-    /// The index of some evidence.
+    /// The index of the evidence of a question.
     #[must_use]
-    pub fn new(evidence: &'e Evidence) -> Self {
+    pub fn new(question: &Question, evidence: &'e Evidence) -> Self {
         let mut robots: Vec<u32> = evidence.ledger.iter().map(|entry| entry.robot).collect();
         let mut rounds: Vec<u32> = evidence.ledger.iter().map(|entry| entry.round).collect();
         rounds.dedup();
@@ -63,7 +66,9 @@ impl<'e> SaidRounds<'e> {
             list.dedup();
         }
         let cells = vec![Cell::default(); robots.len() * rounds.len()];
-        let mut said = Self { energy_threshold: evidence.energy_threshold, robots, rounds, cells };
+        let energy = question.levels.iter().position(|level| level.name == ENERGY);
+        let energy = energy.map(|place| (place, question.levels[place].threshold));
+        let mut said = Self { energy, levels: question.levels.len(), robots, rounds, cells };
         for entry in &evidence.ledger {
             if let Some(place) = said.place(entry.robot, entry.round) {
                 said.cells[place].entry = Some(entry);
@@ -73,7 +78,7 @@ impl<'e> SaidRounds<'e> {
             let Some(place) = said.place(report.of, report.round) else { continue };
             let cell = &mut said.cells[place];
             if cell.first.is_none() && cell.entry.is_none_or(|trip| !is_after(report.sent_s, trip.left_s)) {
-                cell.first = Some([report.energy_level, report.hp_level]);
+                cell.first = Some(&report.levels);
             }
         }
         said
@@ -94,15 +99,15 @@ impl<'e> SaidRounds<'e> {
 
     /// The levels that a robot said when a round began, in percent; none if that was not heard.
     #[must_use]
-    pub fn first(&self, robot: u32, round: u32) -> Option<[f64; 2]> {
+    pub fn first(&self, robot: u32, round: u32) -> Option<&'e [f64]> {
         self.cells[self.place(robot, round)?].first
     }
 
-    /// By how much the levels of a robot fell in a round, as it said, in percent points.
+    /// By how much each level of a robot fell in a round, as it said, in percent points.
     #[must_use]
-    pub fn drops(&self, robot: u32, round: u32) -> Option<[f64; 2]> {
+    pub fn drops(&self, robot: u32, round: u32) -> Option<Vec<f64>> {
         let (before, after) = (self.first(robot, round)?, self.first(robot, round.saturating_add(1))?);
-        Some([before[0] - after[0], before[1] - after[1]])
+        Some(before.iter().zip(after).map(|(before, after)| before - after).collect())
     }
 
     /// For each member of the groups of a round, the medians of what its group-mates said that they spent.
@@ -112,17 +117,17 @@ impl<'e> SaidRounds<'e> {
         let mut all = Vec::new();
         for group in &round.groups {
             let ids: Vec<u32> = group.members.iter().map(|member| member.id).collect();
-            let drops: Vec<Option<[f64; 2]>> = ids
+            let drops: Vec<Option<Vec<f64>>> = ids
                 .iter()
                 .map(|id| {
                     let is_fit = self.entry(*id, round.round).is_some_and(RobotRound::is_sound);
                     self.drops(*id, round.round).filter(|_| is_fit)
                 })
                 .collect();
-            let [energy, health] = [0, 1].map(|level| medians_of_others(&drops, level));
-            let of = |(place, robot): (usize, u32)| {
-                let points = energy[place].zip(health[place]).map(|(energy, health)| [energy, health]);
-                Used { robot, points }
+            let medians: Vec<_> = (0..self.levels).map(|level| medians_of_others(&drops, level)).collect();
+            let of = |(place, robot): (usize, u32)| Used {
+                robot,
+                points: medians.iter().map(|medians| medians[place]).collect(),
             };
             all.extend(ids.into_iter().enumerate().map(of));
         }
@@ -144,18 +149,19 @@ impl<'e> SaidRounds<'e> {
     }
 
     fn energy_outcome(&self, Used { robot, points }: Used, round: u32) -> Option<EnergyOutcome> {
-        let used = points?[0];
+        let (energy, threshold) = self.energy?;
+        let used = points?[energy];
         let entry = self.entry(robot, round)?;
         let outcome = if entry.turned_back || entry.lost {
-            let said = self.first(robot, round)?[0];
-            if said - used <= self.energy_threshold + DOUBTED_POINTS {
+            let said = self.first(robot, round)?[energy];
+            if said - used <= threshold + DOUBTED_POINTS {
                 return None;
             }
             0.0
         } else if entry.rested {
             return None;
         } else {
-            1.0 - ((self.drops(robot, round)?[0] - used).abs() / DOUBTED_POINTS).min(1.0)
+            1.0 - ((self.drops(robot, round)?[energy] - used).abs() / DOUBTED_POINTS).min(1.0)
         };
         Some(EnergyOutcome { robot, round, outcome })
     }
@@ -168,8 +174,8 @@ pub fn is_after(time_s: f64, other_s: f64) -> bool {
 }
 
 /// For each place, the median of the values of all others that have one.
-fn medians_of_others(drops: &[Option<[f64; 2]>], level: usize) -> Vec<Option<f64>> {
-    let known = |place: usize| drops[place].map(|drop| (drop[level], place));
+fn medians_of_others(drops: &[Option<Vec<f64>>], level: usize) -> Vec<Option<f64>> {
+    let known = |place: usize| drops[place].as_ref().map(|drop| (drop[level], place));
     let mut sorted: Vec<(f64, usize)> = (0..drops.len()).filter_map(known).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut rank = vec![None; drops.len()];
@@ -196,21 +202,19 @@ mod tests {
     use crate::evidence::LevelReport;
     use crate::history::{GroupOutcome, MemberOutcome};
     use crate::ids::TaskId;
+    use crate::levels::Level;
 
-    fn report(of: u32, round: u32, energy_level: f64) -> LevelReport {
-        let (sent_s, hp_level) = (60.0 * f64::from(round), energy_level / 2.0);
+    fn report(of: u32, round: u32, energy: f64) -> LevelReport {
+        let (sent_s, levels) = (60.0 * f64::from(round), vec![energy, energy / 2.0]);
         let needs = BTreeMap::new();
-        LevelReport {
-            of,
-            by: of,
-            round,
-            sent_s,
-            heard_s: sent_s,
-            energy_level,
-            hp_level,
-            needs,
-            sd: [0.0; 2],
-        }
+        LevelReport { of, by: of, round, sent_s, heard_s: sent_s, levels, needs, sd: vec![0.0; 2] }
+    }
+
+    /// A question whose robots rest below 30 %.
+    fn question() -> Question {
+        let levels =
+            Level::energy_and_hp().into_iter().map(|level| Level { threshold: 30.0, ..level }).collect();
+        Question { levels, ..Question::default() }
     }
 
     fn entry(robot: u32, turned_back: bool) -> RobotRound {
@@ -233,9 +237,8 @@ mod tests {
                 .map(move |(id, first, then)| report(*id, round, if round == 1 { *first } else { *then }))
         });
         let ledger = (0..4).map(|id| entry(id, false)).collect();
-        let evidence =
-            Evidence { energy_threshold: 30.0, reports: reports.collect(), ledger, ..Evidence::default() };
-        let outcomes: Vec<f64> = SaidRounds::new(&evidence)
+        let evidence = Evidence { reports: reports.collect(), ledger, ..Evidence::default() };
+        let outcomes: Vec<f64> = SaidRounds::new(&question(), &evidence)
             .energy_outcomes(&rounds(&[0, 1, 2, 3]))
             .iter()
             .map(|found| found.outcome)
@@ -244,9 +247,11 @@ mod tests {
         assert_eq!(outcomes, [0.8, 0.6, 0.8, 0.0]);
         let mut caught = evidence.clone();
         caught.ledger[0].turned_back = true;
-        let of = |evidence: &Evidence| SaidRounds::new(evidence).energy_outcomes(&rounds(&[0, 1, 2, 3]))[0];
+        let of = |evidence: &Evidence| {
+            SaidRounds::new(&question(), evidence).energy_outcomes(&rounds(&[0, 1, 2, 3]))[0]
+        };
         assert_eq!(of(&caught), EnergyOutcome { robot: 0, round: 1, outcome: 0.0 }, "80 - 14 > 40");
-        caught.reports[0].energy_level = 50.0;
+        caught.reports[0].levels[0] = 50.0;
         assert_eq!(of(&caught).robot, 1, "50 - 14 <= 40: it may have been tired");
     }
 
@@ -258,13 +263,13 @@ mod tests {
         let ledger = (0..3).map(|id| entry(id, false)).collect();
         let mut evidence = Evidence { reports: reports.collect(), ledger, ..Evidence::default() };
         let used = |evidence: &Evidence| {
-            let used = SaidRounds::new(evidence).used(&rounds(&[0, 1, 2])[0]);
-            used.iter().map(|used| used.points).collect::<Vec<_>>()
+            let used = SaidRounds::new(&question(), evidence).used(&rounds(&[0, 1, 2])[0]);
+            used.into_iter().map(|used| used.points).collect::<Vec<_>>()
         };
-        assert_eq!(used(&evidence), [Some([12.0, 6.0]), Some([13.0, 6.5]), Some([11.0, 5.5])]);
+        assert_eq!(used(&evidence), [Some(vec![12.0, 6.0]), Some(vec![13.0, 6.5]), Some(vec![11.0, 5.5])]);
         evidence.reports[0].sent_s = 70.0; // it was out already
-        assert_eq!(used(&evidence), [Some([12.0, 6.0]), Some([14.0, 7.0]), Some([10.0, 5.0])]);
-        let alone = SaidRounds::new(&evidence).used(&rounds(&[1])[0]);
+        assert_eq!(used(&evidence), [Some(vec![12.0, 6.0]), Some(vec![14.0, 7.0]), Some(vec![10.0, 5.0])]);
+        let alone = SaidRounds::new(&question(), &evidence).used(&rounds(&[1])[0]);
         assert_eq!(alone[0].points, None);
     }
 }

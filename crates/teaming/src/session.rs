@@ -8,8 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::decision::Decision;
 use crate::error::PolicyError;
+use crate::ids::place_of;
 use crate::policy::Policy;
-use crate::question::Question;
+use crate::question::{Member, Question};
 
 /// Something that answers questions, before it is asked any.
 pub trait Driver: Send + Sync {
@@ -22,6 +23,11 @@ pub trait Driver: Send + Sync {
     /// What its answers follow from.
     fn basis(&self) -> Basis {
         Basis::Question
+    }
+
+    /// Whether it is told what is true. A policy of a team that only hears of its robots is not.
+    fn needs_truth(&self) -> bool {
+        false
     }
 
     /// Whether it answers only in the running trial that asks.
@@ -117,15 +123,41 @@ pub struct Asked<'a> {
     pub question: &'a Question,
     /// When it is too late to answer.
     pub deadline: Deadline<'a>,
-    /// The running trial, for drivers of a laboratory that play it on. A [`Policy`] does not get it.
+    /// What is true, for drivers that [need the truth](Driver::needs_truth). Nobody else gets it.
+    pub truth: Option<Truth<'a>>,
+    /// The running trial, for drivers that [need it](Driver::needs_trial), to play it on. Nobody else gets it.
     pub trial: Option<&'a dyn Any>,
+}
+
+/// The members of a question as they really are, by id.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Truth<'a>(pub &'a [Member]);
+
+impl<'a> Truth<'a> {
+    /// A robot as it really is.
+    #[must_use]
+    pub fn of(self, robot: u32) -> Option<&'a Member> {
+        place_of(self.0, robot, |member| member.id).map(|place| &self.0[place])
+    }
 }
 
 impl<'a> Asked<'a> {
     /// A question that is asked outside of a trial and without a deadline.
     #[must_use]
     pub fn of(question: &'a Question) -> Self {
-        Self { question, deadline: Deadline::NEVER, trial: None }
+        Self { question, deadline: Deadline::NEVER, truth: None, trial: None }
+    }
+
+    /// The same, by someone who knows how the members really are.
+    #[must_use]
+    pub fn knowing(self, team: &'a [Member]) -> Self {
+        Self { truth: Some(Truth(team)), ..self }
+    }
+}
+
+impl<'a> From<&'a Question> for Asked<'a> {
+    fn from(question: &'a Question) -> Self {
+        Self::of(question)
     }
 }
 
@@ -190,6 +222,25 @@ impl<S: Session + ?Sized> Session for &mut S {
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
         (**self).decide(asked)
+    }
+}
+
+/// A session that gets of the truth and of the trial what its driver has declared.
+pub(crate) struct Declared {
+    pub(crate) it: Box<dyn Session>,
+    pub(crate) needs_truth: bool,
+    pub(crate) needs_trial: bool,
+}
+
+impl Session for Declared {
+    fn reset(&mut self, trial: &TrialStart<'_>) -> Result<(), PolicyError> {
+        self.it.reset(trial)
+    }
+
+    fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        let truth = asked.truth.filter(|_| self.needs_truth);
+        let trial = asked.trial.filter(|_| self.needs_trial);
+        self.it.decide(&Asked { truth, trial, ..*asked })
     }
 }
 

@@ -38,7 +38,7 @@ pub enum TrustUse {
 
 crate::options! {
     /// Which robots stay at home: those with the least trust first, in each role, but never the last member
-    /// of the team that can carry or that guides.
+    /// of the team that can carry or that guides, and never the robot that asks.
     #[derive(Copy)]
     pub struct Exclude {
         /// Robots with less trust than this, from 0 to 1.
@@ -99,8 +99,7 @@ impl TrustUse {
             }
         };
         let member = |(member, estimate): (&Member, Estimate)| Member {
-            energy_level: Some(estimate.levels[0]),
-            hp_level: Some(estimate.levels[1]),
+            levels: estimate.levels.into_iter().map(Some).collect(),
             needs: estimate.needs,
             ..*member
         };
@@ -168,8 +167,9 @@ impl Exclude {
     fn doubted(&self, question: &Question, estimates: &[Estimate], role: RoleId) -> (Vec<u32>, usize) {
         let all = question.members.iter().zip(estimates).filter(|(member, _)| member.role == role);
         let all: Vec<(f64, u32)> = all.map(|(member, estimate)| (estimate.trust, member.id)).collect();
+        let is_doubted = |(trust, id): &(f64, u32)| *trust < self.below && question.asker != Some(*id);
         let most = (self.most * all.len() as f64 + ROUNDING) as usize;
-        let mut doubted: Vec<(f64, u32)> = all.into_iter().filter(|(trust, _)| *trust < self.below).collect();
+        let mut doubted: Vec<(f64, u32)> = all.into_iter().filter(is_doubted).collect();
         doubted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         (doubted.into_iter().map(|(_, id)| id).collect(), most)
     }
@@ -203,8 +203,8 @@ fn discounted(question: &Question, mut estimates: Vec<Estimate>) -> Result<Vec<E
         let Some(mean) = means.get(member.role.index()).and_then(Option::as_ref) else { continue };
         let trust = estimate.trust.clamp(0.0, 1.0);
         let mix = |own: f64, mean: f64| trust * own + (1.0 - trust) * mean;
-        for (own, mean) in estimate.levels.iter_mut().zip(mean.levels) {
-            *own = mix(*own, mean);
+        for (own, mean) in estimate.levels.iter_mut().zip(&mean.levels) {
+            *own = mix(*own, *mean);
         }
         let body = question.evidence.as_ref().and_then(|evidence| evidence.body(member.id));
         let mut needs = estimate.needs.values().to_vec();
@@ -221,7 +221,7 @@ fn discounted(question: &Question, mut estimates: Vec<Estimate>) -> Result<Vec<E
 
 /// The mean of some members.
 struct Mean {
-    levels: [f64; 2],
+    levels: Vec<f64>,
     needs: Vec<f64>,
 }
 
@@ -234,7 +234,7 @@ impl Mean {
             trusted.iter().map(|estimate| value(estimate)).sum::<f64>() / trusted.len() as f64
         };
         (!trusted.is_empty()).then(|| Self {
-            levels: [0, 1].map(|level| mean(&|estimate| estimate.levels[level])),
+            levels: (0..question.levels.len()).map(|at| mean(&|estimate| estimate.levels[at])).collect(),
             needs: (0..question.needs.len()).map(|k| mean(&|estimate| estimate.needs.values()[k])).collect(),
         })
     }

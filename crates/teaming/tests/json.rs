@@ -3,19 +3,23 @@
 
 use teaming::{Assignment, AssignmentError, Decision, Question, QuestionError, Task};
 
+const BEFORE_LEVELS: &str = "schema_version must be 3, found 2; since version 3, levels stand in lists with a table of \
+    their names, and no question has the truth";
+
 const TEAM: &str = r#"{
-  "schema_version": 2, "round": 2,
+  "schema_version": 3, "round": 2,
   "roles": ["carrier", "observer"],
   "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 0.5}],
+  "levels": [{"name": "energy", "unit": "%"}, {"name": "hp", "unit": "%"}],
   "tasks": [
     {"name": "easy", "difficulty": 1, "place": [70.0, 50.0]},
     {"name": "hard", "difficulty": 2, "place": [15.0, 60.0]}],
   "quotas": [{"members": [1, 2], "sizes": "Parts"}, {"members": [0, 1], "sizes": "Binding"}],
   "members": [
-    {"id": 4, "role": 0, "home": [0.0, 0.0], "needs": [90.1, 1.5], "energy_level": 33.3, "hp_level": 90.1},
-    {"id": 2, "role": 0, "home": [2.0, 0.0], "needs": [60.0, 2.0], "energy_level": 44.4, "hp_level": 60.0},
-    {"id": 3, "role": 0, "home": [4.0, 0.1], "needs": [80.0, 1.0], "energy_level": 55.5, "hp_level": 80.0},
-    {"id": 1, "role": 1, "home": [6.0, 0.0], "needs": [50.0, 0.0], "energy_level": 66.6, "hp_level": 99.9}],
+    {"id": 4, "role": 0, "home": [0.0, 0.0], "needs": [90.1, 1.5], "levels": [33.3, 90.1]},
+    {"id": 2, "role": 0, "home": [2.0, 0.0], "needs": [60.0, 2.0], "levels": [44.4, 60.0]},
+    {"id": 3, "role": 0, "home": [4.0, 0.1], "needs": [80.0, 1.0], "levels": [55.5, 80.0]},
+    {"id": 1, "role": 1, "home": [6.0, 0.0], "needs": [50.0, 0.0], "levels": [66.6, 99.9]}],
   "history": [{"round": 1, "duration_s": 99.5, "groups": [
     {"task": 0, "rescued": 3, "energy": 12.5, "hp": 0.1, "members": [
       {"id": 4, "rescued": 3, "energy": 12.5, "hp": 0.1, "turned_back": false, "lost": false}]},
@@ -35,9 +39,31 @@ fn a_question_is_read_as_it_was_written() {
 }
 
 #[test]
+fn the_robot_that_asks_is_told_where_there_is_one_and_is_a_member() {
+    let by = |asker| Question { asker: Some(asker), ..Question::from_json(TEAM).unwrap() };
+    let text = serde_json::to_string(&by(3)).unwrap();
+    assert!(text.contains("\"asker\":3"), "{text}");
+    assert_eq!(Question::from_json(&text).unwrap(), by(3));
+    assert!(!serde_json::to_string(&Question::from_json(TEAM).unwrap()).unwrap().contains("asker"));
+    let error = by(9).checked().unwrap_err().to_string();
+    assert_eq!(error, "asker must be one of the members, found robot 9");
+}
+
+#[test]
+fn what_was_written_before_levels_had_names_is_refused_in_one_sentence() {
+    let former =
+        r#"{"schema_version": 2, "members": [{"id": 4, "energy_level": 33.3}], "evidence": {"truth": []}}"#;
+    assert_eq!(Question::from_json(former).unwrap_err().to_string(), BEFORE_LEVELS);
+    let in_a_file = serde_json::from_str::<Question>(former).unwrap_err().to_string();
+    assert!(in_a_file.starts_with(BEFORE_LEVELS), "{in_a_file}");
+    let truth = TEAM.replace("\"random_seed\"", "\"evidence\": {\"truth\": []}, \"random_seed\"");
+    assert!(Question::from_json(&truth).unwrap_err().to_string().contains("unknown field `truth`"));
+}
+
+#[test]
 fn a_decision_needs_no_more_than_its_groups() {
     let decision =
-        Decision::from_json(r#"{"schema_version": 2, "assignment": {"groups": [[3], [4, 1, 2]]}}"#);
+        Decision::from_json(r#"{"schema_version": 3, "assignment": {"groups": [[3], [4, 1, 2]]}}"#);
     let decision = decision.unwrap();
     assert_eq!(decision, Decision::unscored(vec![vec![3], vec![1, 2, 4]]));
     assert_eq!(decision.assignment, Assignment::new(vec![vec![3], vec![4, 2, 1]]));
@@ -46,20 +72,17 @@ fn a_decision_needs_no_more_than_its_groups() {
 #[test]
 fn what_is_no_decision_is_refused() {
     let refused = |text: &str| Decision::from_json(text).unwrap_err().to_string();
+    assert_eq!(refused(r#"{"schema_version": 2, "assignment": {"groups": []}}"#), BEFORE_LEVELS);
     assert_eq!(
-        refused(r#"{"schema_version": 3, "assignment": {"groups": []}}"#),
-        "schema_version must be 2, found 3"
-    );
-    assert_eq!(
-        refused(r#"{"schema_version": 2, "groups": []}"#),
+        refused(r#"{"schema_version": 3, "groups": []}"#),
         "not the JSON of a decision: unknown field `groups`, expected one of `schema_version`, `assignment`, \
          `score`, `proven_optimal`, `alternatives`, `account`, `believed`"
     );
     let former =
-        r#"{"schema_version": 2, "assignment": {"groups": []}, "upper_bound": null, "gap_percent": 0.0}"#;
+        r#"{"schema_version": 3, "assignment": {"groups": []}, "upper_bound": null, "gap_percent": 0.0}"#;
     assert!(Decision::from_json(former).is_ok(), "older recordings and programs may say so");
     assert_eq!(
-        refused(r#"{"schema_version": 2}"#),
+        refused(r#"{"schema_version": 3}"#),
         "not the JSON of a decision: missing field `assignment` at line 1 column 21"
     );
 }
@@ -68,21 +91,22 @@ fn what_is_no_decision_is_refused() {
 fn what_is_no_question_is_refused_with_the_reason() {
     let not_json = |reason: &str| format!("not the JSON of a question: {reason}");
     for (from, to, message) in [
-        ("\"schema_version\": 2", "\"schema_version\": 7", "schema_version must be 2, found 7".to_owned()),
+        ("\"schema_version\": 3", "\"schema_version\": 7", "schema_version must be 3, found 7".to_owned()),
         (
             "\"round\": 2",
             "\"turn\": 2",
             not_json(
-                "unknown field `turn`, expected one of `schema_version`, `round`, `roles`, `needs`, `tasks`, \
-                 `quotas`, `members`, `may_idle`, `history`, `random_seed`, `evidence` at line 2 column 29",
+                "unknown field `turn`, expected one of `schema_version`, `round`, `asker`, `roles`, `needs`, \
+                 `levels`, `rest`, `tasks`, `quotas`, `members`, `may_idle`, `history`, `random_seed`, `evidence` \
+                 at line 2 column 29",
             ),
         ),
         (
             "\"id\": 4, \"role\"",
             "\"id\": 4, \"colour\": 1, \"role\"",
             not_json(
-                "unknown field `colour`, expected one of `id`, `role`, `home`, `needs`, `energy_level`, \
-                 `hp_level` at line 10 column 22",
+                "unknown field `colour`, expected one of `id`, `role`, `home`, `needs`, `levels` \
+                 at line 11 column 22",
             ),
         ),
         (" \"round\": 2,", "", not_json("missing field `round` at line 19 column 1")),
@@ -140,6 +164,12 @@ fn what_is_no_question_is_refused_with_the_reason() {
             "task \"easy\" comes after task 2, which is not in the table of tasks".to_owned(),
         ),
         (
+            "\"hp\", \"unit\": \"%\"",
+            "\"hp\", \"unit\": \"J\"",
+            "level \"hp\": its unit must be \"%\", found \"J\"".to_owned(),
+        ),
+        ("[33.3, 90.1]", "[33.3]", "robot 4: levels must have 2 entries, found 1".to_owned()),
+        (
             "\"weight\": 0.5",
             "\"weight\": -0.5",
             "the weight of need \"v\" must be a finite number >= 0, found -0.5".to_owned(),
@@ -164,8 +194,8 @@ fn numbers_that_json_cannot_write_are_refused_by_name() {
         "y of robot 2 must be a finite number of at most 1e100 in size, found NaN"
     );
     assert_eq!(
-        refused(&|q| q.members[0].hp_level = Some(f64::INFINITY)),
-        "hp_level of robot 1 must be a finite number of at most 1e100 in size, found inf"
+        refused(&|q| q.members[0].levels[1] = Some(f64::INFINITY)),
+        "hp of robot 1 must be a finite number of at most 1e100 in size, found inf"
     );
     assert_eq!(
         refused(&|q| q.tasks[1].place = Some([1.0, f64::NAN])),

@@ -10,7 +10,7 @@ use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
 use crate::model::{Liar, Model, TelemetryModel};
 use crate::robot::{Condition, Robot};
 use crate::tally::Tally;
-use crate::telemetry::{Ends, Heard, Link, Telemetry, known, named, true_levels};
+use crate::telemetry::{Ends, Heard, Link, Telemetry, known, named};
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -157,8 +157,7 @@ pub(crate) fn whole_question(
     });
     let Some((heard, extent)) = known else { return Question { history, ..asked.clone() } };
     let history = named(&history, &extent.known_since);
-    let evidence = Evidence { truth: true_levels(made.team()), ..heard.evidence.as_of(extent) };
-    Question { history, evidence: Some(evidence), ..asked.clone() }
+    Question { history, evidence: Some(heard.evidence.as_of(extent)), ..asked.clone() }
 }
 
 /// A link in a trial: from a robot to the base or to a group-mate.
@@ -178,7 +177,7 @@ pub struct LinkRecord {
 
 impl HeardRecord {
     pub(crate) fn of(telemetry: &Telemetry, model: &Model) -> Self {
-        let Heard { history, evidence, extents, .. } = telemetry.heard();
+        let Heard { history, log, extents, .. } = telemetry.heard();
         let link = |(ends, link): (&Ends, &Link)| LinkRecord {
             from: ends.from.0,
             to: ends.to.map(|to| to.0),
@@ -188,7 +187,7 @@ impl HeardRecord {
         };
         Self {
             history: history.clone(),
-            evidence: known(model, evidence.clone()),
+            evidence: known(model, log.evidence()),
             extents: extents.clone(),
             links: telemetry.links().map(link).collect(),
             liars: model.telemetry.as_ref().map(TelemetryModel::liars).unwrap_or_default(),

@@ -9,7 +9,7 @@ use rne_core::{NeedVector, NeedsError};
 use scenario::Measure;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
-use teaming::{Level, LevelNeed, Member, NeedId};
+use teaming::{LevelId, LevelNeed, Member, NeedId};
 
 use crate::ids::RescueeId;
 use crate::model::{NeedModel, RobotModel};
@@ -176,8 +176,7 @@ impl Robot {
             role: self.role,
             home: [f64::from(self.home.x), f64::from(self.home.y)],
             needs: self.needs(table).ok()?,
-            energy_level: Some(self.energy),
-            hp_level: Some(self.hp),
+            levels: vec![Some(self.energy), Some(self.hp)],
         })
     }
 
@@ -206,11 +205,17 @@ impl Robot {
     }
 }
 
+/// The place of the battery level in the table of levels.
+pub const ENERGY: LevelId = LevelId(0);
+
+/// The place of the health level.
+pub const HP: LevelId = LevelId(1);
+
 /// The level that a need follows from, if it follows from one.
-fn level_of(measures: Measure) -> Option<Level> {
+fn level_of(measures: Measure) -> Option<LevelId> {
     match measures {
-        Measure::Health | Measure::Speed | Measure::Sensing | Measure::Observing => Some(Level::Health),
-        Measure::Energy => Some(Level::Energy),
+        Measure::Health | Measure::Speed | Measure::Sensing | Measure::Observing => Some(HP),
+        Measure::Energy => Some(ENERGY),
         Measure::Resources | Measure::Capacity | Measure::Constant => None,
     }
 }

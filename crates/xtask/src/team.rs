@@ -4,7 +4,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::NeedVector;
 use teaming::question::hardest_first;
-use teaming::{Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
+use teaming::{Level, Member, Need, Question, Quota, RandomSeed, RoleId, Task};
 
 /// A question about a team of carriers, suppliers and observers, to be split over so many tasks, at most
 /// three. Their needs are as in the paper's scenario, drawn at random.
@@ -23,8 +23,7 @@ pub fn question(counts: [u32; 3], tasks: usize) -> Question {
             role,
             home: [draws.random_range(0.0..100.0), 5.0],
             needs: NeedVector::new(needs.to_vec()).expect("valid needs"),
-            energy_level: Some(energy),
-            hp_level: Some(hp),
+            levels: vec![Some(energy), Some(hp)],
         }
     });
     let members = members.collect();
@@ -33,8 +32,6 @@ pub fn question(counts: [u32; 3], tasks: usize) -> Question {
     let tasks: Vec<Task> = places.into_iter().take(tasks).map(task).collect();
     let order = hardest_first(tasks.iter().map(|task| task.difficulty));
     let question = Question {
-        schema_version: SCHEMA_VERSION,
-        round: 1,
         roles: ["carrier", "supplier", "observer"].map(str::to_owned).to_vec(),
         needs: ["hp", "v", "sen", "eng", "res", "cap", "obs"]
             .map(|name| Need { name: name.to_owned(), weight: 1.0 })
@@ -42,10 +39,9 @@ pub fn question(counts: [u32; 3], tasks: usize) -> Question {
         tasks,
         quotas: Quota::equal(&counts.map(|count| count as usize), &order),
         members,
-        may_idle: false,
-        history: Vec::new(),
+        levels: Level::energy_and_hp(),
         random_seed: RandomSeed::from(1),
-        evidence: None,
+        ..Question::default()
     };
     question.checked().expect("a question")
 }

@@ -14,7 +14,7 @@
 //! asked about those that are left.
 
 use rne_core::{NeedVector, NeedsError};
-use teaming::question::{Member, Need, RandomSeed, SCHEMA_VERSION, Task as Asked};
+use teaming::question::{Member, Need, RandomSeed, Task as Asked};
 use teaming::session::TrialStart;
 use teaming::{Assignment, AssignmentError, GroupSizes, PolicyError, Question};
 use teaming::{QuestionError, Quota, RoleId, Session, TaskId};
@@ -138,7 +138,6 @@ impl Turn {
             quotas.iter_mut().for_each(|quota| quota.members.truncate(tasks.len()));
         }
         let question = Question {
-            schema_version: SCHEMA_VERSION,
             round,
             roles: roles.iter().map(|skills| format!("skills {}", names(problem, *skills))).collect(),
             needs: (0..problem.skills).map(|skill| Need { name: need(skill), weight: 1.0 }).collect(),
@@ -146,9 +145,8 @@ impl Turn {
             quotas,
             members: members(schedule, &rows)?,
             may_idle: true,
-            history: Vec::new(),
             random_seed: RandomSeed::from(xxh3_64(format!("{} {round}", problem.name).as_bytes())),
-            evidence: None,
+            ..Question::default()
         };
         Ok(Some(Self { question: question.checked()?, tasks, free }))
     }
@@ -255,8 +253,7 @@ fn members(schedule: &Schedule, rows: &[(usize, RoleId)]) -> Result<Vec<Member>,
             role: *role,
             home: problem.places[schedule.place[*robot]],
             needs: NeedVector::new((0..problem.skills).map(has).collect())?,
-            energy_level: None,
-            hp_level: None,
+            levels: Vec::new(),
         })
     };
     (0..).zip(rows).map(member).collect()

@@ -147,7 +147,7 @@ struct Candidate {
 mod tests {
     use rne_core::NeedVector;
     use teaming::question::hardest_first;
-    use teaming::{Decision, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
+    use teaming::{Decision, Level, Need, Question, Quota, RandomSeed, RoleId, Task};
 
     use super::*;
 
@@ -159,8 +159,7 @@ mod tests {
             role: RoleId(0),
             home: [0.0, 0.0],
             needs: NeedVector::new(vec![*hp, *energy]).unwrap(),
-            energy_level: Some(*energy),
-            hp_level: Some(*hp),
+            levels: vec![Some(*energy), Some(*hp)],
         };
         let ids = |task: usize| {
             let of_task = (0..).zip(robots).filter(|(_, robot)| robot.2 == task);
@@ -169,17 +168,14 @@ mod tests {
         let tasks = vec![Task::new("far", 2), Task::new("near", 1)];
         let order = hardest_first(tasks.iter().map(|task| task.difficulty));
         let question = Question {
-            schema_version: SCHEMA_VERSION,
-            round: 1,
             roles: vec!["walker".into()],
             needs: ["hp", "eng"].map(|name| Need { name: name.into(), weight: 1.0 }).to_vec(),
             tasks,
             quotas: Quota::equal(&[robots.len()], &order),
             members: (0..).zip(robots).map(member).collect(),
-            may_idle: false,
-            history: Vec::new(),
+            levels: Level::energy_and_hp(),
             random_seed: RandomSeed::from(1),
-            evidence: None,
+            ..Question::default()
         };
         let (decision, team) = (Decision::unscored(vec![ids(0), ids(1)]), question.members.clone());
         Round { trial: 3, seed: 7, question, decision, team }

@@ -128,9 +128,10 @@ fn of_trial(
         if Deadline::when(halt).is_over() {
             return Err(Failure::Interrupted("stopped; nothing was written".to_owned()));
         }
-        let decision = deaf.decide(&Asked::of(&question)).map_err(|error| failed(&error))?;
+        let team = trial.team();
+        let asked = Asked::of(&question).knowing(&team);
+        let decision = deaf.decide(&asked).map_err(|error| failed(&error))?;
         if let Some(known) = outcomes.get(&question.round) {
-            let team = trial.truth().unwrap_or_else(|| question.members.clone());
             if known.chosen != decision.assignment || !is_of_world(known, &question, &team) {
                 refuse!("the study is of another world: seed {}, round {}", played.seed, question.round);
             }
@@ -138,7 +139,7 @@ fn of_trial(
             let values = values(&survey, objective);
             for (session, worths) in sessions.iter_mut().zip(&mut worths) {
                 // One answer that was not played, and the mean would be of some of the decisions only.
-                match worth(&mut **session, &question, &values).map_err(|error| failed(&error))? {
+                match worth(&mut **session, &asked, &values).map_err(|error| failed(&error))? {
                     Some(one) => worths.iter_mut().for_each(|worths| worths.push(one)),
                     None => *worths = None,
                 }
@@ -153,7 +154,7 @@ fn of_trial(
 /// may have said something else of itself.
 fn is_of_world(known: &PlayedDecision, question: &Question, team: &[Member]) -> bool {
     let asked = &known.question;
-    let is_same_team = known.truth.as_deref().unwrap_or(&asked.members) == team;
+    let is_same_team = known.team() == team;
     let tables =
         asked.tasks == question.tasks && asked.needs == question.needs && asked.roles == question.roles;
     tables && asked.quotas == question.quotas && is_same_team
@@ -168,10 +169,10 @@ fn values<'s>(survey: &'s Survey, objective: &Objective) -> BTreeMap<&'s Assignm
 /// The value of a policy's assignment minus the mean of all; `None` if it was not played.
 fn worth(
     session: &mut dyn Session,
-    question: &Question,
+    asked: &Asked<'_>,
     values: &BTreeMap<&Assignment, f64>,
 ) -> Result<Option<f64>, PolicyError> {
-    let decision = session.decide(&Asked::of(question))?;
+    let decision = session.decide(asked)?;
     let mean = values.values().sum::<f64>() / values.len() as f64;
     Ok(values.get(&decision.assignment).map(|value| value - mean))
 }

@@ -45,7 +45,8 @@ impl Experiment {
             let mut session = spec.made().open().ok()?;
             session.reset(&start).ok()?;
             let is_other = |asked: &&DecisionRecord| {
-                let answer = session.decide(&Asked::of(&record.question(asked)));
+                let question = record.question(asked);
+                let answer = session.decide(&Asked::of(&question).knowing(asked.team()));
                 answer.ok().is_none_or(|answer| answer.assignment != asked.decision.assignment)
             };
             record.decisions.iter().find(is_other).map(|asked| asked.question.round)

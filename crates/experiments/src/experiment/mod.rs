@@ -258,8 +258,8 @@ impl Experiment {
     }
 
     fn player<'s>(&self, key: &TrialKey, sessions: &'s mut Sessions) -> Result<Player<'s>, Fault> {
-        let driver = &*self.policies[key.policy].made().it;
-        sessions.of(key.policy, driver).map_err(|error| Fault::of_policy(&error))
+        let policy = self.policies[key.policy].made();
+        sessions.of(key.policy, policy).map_err(|error| Fault::of_policy(&error))
     }
 
     fn setup(&self, key: &TrialKey) -> TrialSetup<'_> {

@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::path::Path;
 
 use store::Failure;
-use teaming::{Asked, Assignment, Basis, PolicyError, Question, Session, TrialStart};
-use usar_sim::simulation::{Advance, Ask, Simulation};
+use teaming::{Asked, Assignment, Basis, PolicyError, Session, TrialStart};
+use usar_sim::simulation::Simulation;
 
 use super::{Case, Experiment, PolicySpec};
 use crate::run::{Player, Sessions};
@@ -43,17 +43,19 @@ impl Experiment {
         let place = self.describe(case);
         let mut trial =
             Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
-        let Advance::Asks(Ask::Grouping(question)) = trial.advance() else { return Ok(()) };
+        trial.advance();
+        let (Some(question), team) = (trial.question(), trial.team()) else { return Ok(()) };
+        let asked = Asked::of(question).knowing(&team);
         let start = TrialStart { scenario: &case.scenario.name, seed };
         let is_asked = |spec: &PolicySpec| spec.is_of_question() && spec.made().it.basis() != Basis::Absent;
         for (number, spec) in self.policies.iter().enumerate().filter(|(_, spec)| is_asked(spec)) {
             let refused = |error: &dyn Display| format!("{place}seed {seed}: policy {}: {error}", spec.label);
             let Player { session, basis } =
-                sessions.of(number, &*spec.made().it).map_err(|error| refused(&error))?;
-            let first = answer(session, &start, question).map_err(|error| refused(&error))?;
+                sessions.of(number, spec.made()).map_err(|error| refused(&error))?;
+            let first = answer(session, &start, &asked).map_err(|error| refused(&error))?;
             first.check(question).map_err(|error| refused(&error))?;
             if is_first && basis == Basis::Question {
-                let second = second_answer(spec, &start, question).map_err(|error| refused(&error))?;
+                let second = second_answer(spec, &start, &asked).map_err(|error| refused(&error))?;
                 if second != first {
                     return Err(refused(&differing(&[first, second])));
                 }
@@ -66,19 +68,19 @@ impl Experiment {
 fn answer(
     session: &mut dyn Session,
     start: &TrialStart<'_>,
-    question: &Question,
+    asked: &Asked<'_>,
 ) -> Result<Assignment, PolicyError> {
     session.reset(start)?;
-    Ok(session.decide(&Asked::of(question))?.assignment.sorted())
+    Ok(session.decide(asked)?.assignment.sorted())
 }
 
 /// The answer of another session.
 fn second_answer(
     spec: &PolicySpec,
     start: &TrialStart<'_>,
-    question: &Question,
+    asked: &Asked<'_>,
 ) -> Result<Assignment, PolicyError> {
-    answer(&mut *spec.made().open()?, start, question)
+    answer(&mut *spec.made().open()?, start, asked)
 }
 
 fn differing(answers: &[Assignment; 2]) -> String {

@@ -247,7 +247,7 @@ impl Space {
         let policies = self.experiment.policies.iter().enumerate();
         let trial = |(number, policy): (usize, &crate::experiment::PolicySpec)| {
             let run = AssertUnwindSafe(|| {
-                let player = sessions.of(number, &*policy.made().it);
+                let player = sessions.of(number, policy.made());
                 shared.run(0, &setup, player.map_err(|error| Fault::of_policy(&error))?, stop)
             });
             let failed = |reason: String| PointError::Trial { policy: policy.label.clone(), seed, reason };

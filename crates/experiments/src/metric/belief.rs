@@ -5,6 +5,7 @@ use statistics::scores::{Forecast, area_under_curve, brier, calibration_error, c
 use teaming::{Estimate, Member};
 use usar_sim::model::Liar;
 use usar_sim::record::{DecisionRecord, HeardRecord, TrialRecord};
+use usar_sim::robot::{ENERGY, HP};
 
 /// A robot with less trust than this counts as detected.
 const DETECTED_BELOW: f64 = 0.5;
@@ -147,8 +148,7 @@ fn beliefs_of(made: &DecisionRecord) -> impl Iterator<Item = Belief> {
     let estimates = made.decision.believed.as_deref();
     let members = made.question.members.iter().zip(made.team()).enumerate();
     members.flat_map(move |(place, (said, is))| {
-        let said = [said.energy_level, said.hp_level];
-        let truth = [is.energy_level, is.hp_level];
+        let [said, truth] = [said, is].map(|member| [ENERGY, HP].map(|level| member.level(level)));
         let estimate = estimates.and_then(|all| all.get(place));
         [0, 1].into_iter().filter_map(move |level| {
             let mean = estimate.map_or(said[level], |it| Some(it.levels[level]))?;

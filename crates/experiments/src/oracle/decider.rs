@@ -120,7 +120,7 @@ struct OracleSession {
 
 impl Session for OracleSession {
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        let Asked { question, deadline, trial } = *asked;
+        let Asked { question, deadline, trial, .. } = *asked;
         let Some(trial) = trial.and_then(|trial| trial.downcast_ref::<Simulation>()) else {
             return Err(PolicyError::NoTrial { policy: NAME.to_owned() });
         };

@@ -185,10 +185,10 @@ mod tests {
 
     /// Robots of one role for two tasks, by the JSON form of a question.
     fn question(robots: usize) -> Question {
-        let member = |id| json!({"id": id, "role": 0, "home": [0, 0], "needs": [1], "energy_level": null, "hp_level": null});
+        let member = |id| json!({"id": id, "role": 0, "home": [0, 0], "needs": [1]});
         let task = |name| json!({"name": name, "difficulty": 1});
         let text = json!({
-            "schema_version": 2, "round": 1, "roles": ["walker"], "needs": [{"name": "constant", "weight": 1}],
+            "schema_version": 3, "round": 1, "roles": ["walker"], "needs": [{"name": "constant", "weight": 1}],
             "tasks": [task("far"), task("near")], "members": (0..robots).map(member).collect::<Vec<_>>(),
             "quotas": [{"members": [robots / 2, robots / 2], "sizes": "Parts"}],
             "history": [], "random_seed": "00".repeat(32),

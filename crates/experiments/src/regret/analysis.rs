@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 use store::Failure;
-use teaming::{Assignment, MadeMeasure, Registry};
+use teaming::{Asked, Assignment, MadeMeasure, Registry};
 
 use super::features::{FEATURES, values};
 use super::study::{PlayedTrial, StudyFolder};
@@ -160,7 +160,9 @@ pub fn analyse(folder: &StudyFolder, criteria: &Criteria, registry: &Registry) -
     for trial in &folder.folder.entries {
         for decision in &trial.decisions {
             let survey = decision.survey();
-            let choice = |spec: &PolicySpec| spec.made().decide(&decision.question).ok();
+            let choice = |spec: &PolicySpec| {
+                spec.made().decide(Asked::of(&decision.question).knowing(decision.team())).ok()
+            };
             let choices: Vec<Option<Assignment>> =
                 specs.iter().map(|spec| Some(choice(spec)?.assignment)).collect();
             let Some(found) = look(trial, &survey, criteria, &choices, decision) else { continue };

@@ -36,10 +36,14 @@ pub struct Sample {
 }
 
 impl PlayedDecision {
+    /// The members as they really were, by id.
+    pub fn team(&self) -> &[Member] {
+        self.truth.as_ref().unwrap_or(&self.question.members)
+    }
+
     /// The question as it would have been if all members had been reported as they were.
     pub fn true_question(&self) -> Question {
-        let members = self.truth.as_ref().unwrap_or(&self.question.members).clone();
-        Question { members, ..self.question.clone() }
+        Question { members: self.team().to_vec(), ..self.question.clone() }
     }
 
     /// The assignments and their outcomes.
@@ -97,7 +101,9 @@ pub fn play_decisions(
             Advance::Over(_) => return Ok(played),
             Advance::Asks(Ask::Grouping(question)) => question.clone(),
         };
-        let asked = Asked { question: &question, deadline: plan.halt, trial: Some(&trial) };
+        let team = trial.team();
+        let asked = Asked::of(&question).knowing(&team);
+        let asked = Asked { deadline: plan.halt, trial: Some(&trial), ..asked };
         let decision = session.decide(&asked).map_err(|error| match error {
             PolicyError::Late if plan.halt.is_over() => BranchError::Halted,
             error => failed(&error),
@@ -116,11 +122,11 @@ impl Plan<'_> {
         question: Question,
         decision: &Decision,
     ) -> Result<PlayedDecision, BranchError> {
-        let start = trial.checkpoint();
+        let (start, team) = (trial.checkpoint(), trial.team());
         let mut named = vec![decision.assignment.clone()];
         for session in &mut self.named {
             // A policy that cannot group this team is skipped. The tables leave it out, too.
-            let asked = Asked { deadline: self.halt, ..Asked::of(&question) };
+            let asked = Asked { deadline: self.halt, ..Asked::of(&question).knowing(&team) };
             named.extend(session.decide(&asked).map(|decision| decision.assignment));
         }
         let (halt, onwards) = (self.halt, &mut self.onwards);

@@ -6,7 +6,8 @@ mod sizes;
 mod sorting;
 
 use store::Failure;
-use teaming::{Assignment, Decision, MadePolicy, Member, Question, RoleId, TaskId};
+use teaming::{Asked, Assignment, Decision, MadePolicy, Member, Question, RoleId, TaskId};
+use usar_sim::robot::{ENERGY, HP};
 
 pub use levels::{GroupLevels, levels, mean_levels};
 pub use sizes::{OddSizes, odd_sizes};
@@ -61,7 +62,7 @@ impl Round {
     /// # Errors
     /// The policy cannot group this team.
     pub fn grouped_by(&self, policy: &MadePolicy) -> Result<Assignment, Failure> {
-        Ok(policy.decide(&self.question).map_err(Failure::run)?.assignment)
+        Ok(policy.decide(Asked::of(&self.question).knowing(&self.team)).map_err(Failure::run)?.assignment)
     }
 
     /// The question as it would have been if all members had been reported as they were.
@@ -101,19 +102,19 @@ impl Round {
 
 /// Battery level of a member, in percent.
 pub fn energy(member: &Member) -> f64 {
-    member.energy_level.unwrap_or(0.0)
+    member.level(ENERGY).unwrap_or(0.0)
 }
 
 /// Health level of a member, in percent.
 pub fn hp(member: &Member) -> f64 {
-    member.hp_level.unwrap_or(0.0)
+    member.level(HP).unwrap_or(0.0)
 }
 
 #[cfg(test)]
 pub(crate) mod testing {
     use rne_core::NeedVector;
     use teaming::question::hardest_first;
-    use teaming::{Decision, Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
+    use teaming::{Decision, Level, Member, Need, Question, Quota, RandomSeed, RoleId, Task};
 
     use super::Round;
 
@@ -125,8 +126,7 @@ pub(crate) mod testing {
             role: RoleId(0),
             home: [0.0, 0.0],
             needs: NeedVector::new(vec![*hp, *energy]).unwrap(),
-            energy_level: Some(*energy),
-            hp_level: Some(*hp),
+            levels: vec![Some(*energy), Some(*hp)],
         };
         let ids = |task: usize| {
             let of_task = (0..).zip(robots).filter(|(_, robot)| robot.2 == task);
@@ -135,17 +135,14 @@ pub(crate) mod testing {
         let tasks = vec![Task::new("far", 2), Task::new("near", 1)];
         let order = hardest_first(tasks.iter().map(|task| task.difficulty));
         let question = Question {
-            schema_version: SCHEMA_VERSION,
-            round: 1,
             roles: vec!["walker".into()],
             needs: ["hp", "eng"].map(|name| Need { name: name.into(), weight: 1.0 }).to_vec(),
             tasks,
             quotas: Quota::equal(&[robots.len()], &order),
             members: (0..).zip(robots).map(member).collect(),
-            may_idle: false,
-            history: Vec::new(),
+            levels: Level::energy_and_hp(),
             random_seed: RandomSeed::from(1),
-            evidence: None,
+            ..Question::default()
         };
         let (decision, team) = (Decision::unscored(vec![ids(0), ids(1)]), question.members.clone());
         Round { trial: 3, seed: 7, question, decision, team }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use teaming::{Basis, Driver, PolicyError, Session};
+use teaming::{Basis, MadePolicy, PolicyError, Session};
 
 /// The open sessions of a worker, by the number of their policy in the sweep.
 #[derive(Default)]
@@ -20,16 +20,16 @@ pub struct Player<'s> {
 }
 
 impl Sessions {
-    /// The session of a policy.
+    /// The session of a policy, by its number.
     ///
     /// # Errors
     /// It cannot be opened.
-    pub fn of(&mut self, policy: usize, driver: &dyn Driver) -> Result<Player<'_>, PolicyError> {
-        let session = match self.open.entry(policy) {
+    pub fn of(&mut self, number: usize, policy: &MadePolicy) -> Result<Player<'_>, PolicyError> {
+        let session = match self.open.entry(number) {
             Entry::Occupied(open) => open.into_mut(),
-            Entry::Vacant(place) => place.insert(driver.open()?),
+            Entry::Vacant(place) => place.insert(policy.open()?),
         };
-        Ok(Player { session: &mut **session, basis: driver.basis() })
+        Ok(Player { session: &mut **session, basis: policy.it.basis() })
     }
 
     /// Ends the session of a policy, after a trial that left it in an unknown state.

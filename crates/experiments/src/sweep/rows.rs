@@ -10,6 +10,8 @@ use usar_sim::event::ReturnCause;
 use usar_sim::hash::Link;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::{LinkRecord, RobotRecord, TrialRecord};
+use usar_sim::robot::{ENERGY, HP};
+use usar_sim::scenario::NeedFile;
 
 use super::line::Finished;
 use super::summary::Summary;
@@ -237,8 +239,8 @@ pub(super) fn groups<'a>(needs: &[NeedFile]) -> Columns<GroupRow<'a>> {
         "robot", Natural, "", ROBOT, |row| row.it.member.id;
         "role", Text, "", ROLE, |row| row.it.question.roles[row.it.member.role.index()].clone();
         "task", Text, "", TASK, |row| row.it.question.tasks[row.it.task.index()].name.clone();
-        "energy", Number, "%", energy, |row| Cell::short(row.it.member.energy_level);
-        "hp", Number, "%", hp, |row| Cell::short(row.it.member.hp_level);
+        "energy", Number, "%", energy, |row| Cell::short(row.it.member.level(ENERGY));
+        "hp", Number, "%", hp, |row| Cell::short(row.it.member.level(HP));
     });
     columns.extend(needs.iter().enumerate().map(|(place, need)| {
         let meaning = format!("The need {:?} as it really was, in the units of the scenario.", need.name);

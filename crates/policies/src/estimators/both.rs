@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use teaming::nested::Part;
-use teaming::{Estimate, Estimator, EstimatorKind, MadeEstimator, PolicyError, Question};
+use teaming::{Estimate, Estimator, EstimatorKind, MadeEstimator, PolicyError, Question, Truth};
 
 /// The options: each is an estimator, with options of its own.
 const PARTS: [Part; 2] = [Part { name: "level", default: "Kalman" }, Part { name: "trust", default: "Brs" }];
@@ -25,11 +25,25 @@ pub fn kind() -> EstimatorKind {
         .from_sources(env!("SOURCES_ESTIMATOR_BOTH"))
 }
 
-impl Estimator for Both {
-    fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
-        let (levels, trust) = (self.level.it.estimate(question)?, self.trust.it.estimate(question)?);
+impl Both {
+    fn joined(&self, question: &Question, truth: Option<Truth<'_>>) -> Result<Vec<Estimate>, PolicyError> {
+        let (levels, trust) = (self.level.estimate(question, truth)?, self.trust.estimate(question, truth)?);
         let joined = |(level, trust): (Estimate, Estimate)| Estimate { trust: trust.trust, ..level };
         Ok(levels.into_iter().zip(trust).map(joined).collect())
+    }
+}
+
+impl Estimator for Both {
+    fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+        self.joined(question, None)
+    }
+
+    fn needs_truth(&self) -> bool {
+        self.level.it.needs_truth() || self.trust.it.needs_truth()
+    }
+
+    fn estimate_with(&self, question: &Question, truth: Truth<'_>) -> Result<Vec<Estimate>, PolicyError> {
+        self.joined(question, Some(truth))
     }
 
     fn least_raters(&self) -> Option<u32> {

@@ -8,7 +8,7 @@
 use teaming::estimate::as_said;
 use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
-use super::filter::{Rules, follow};
+use super::filter::{Rules, estimate, follow};
 use super::rounds::rounds;
 
 /// The rules of `Kalman` by default.
@@ -30,9 +30,7 @@ impl Estimator for DeadReckoning {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return as_said(question) };
         let of = |(member, seen): (_, Vec<_>)| {
-            let (guesses, _) = follow(evidence, &seen, &RULES, false);
-            let levels = guesses.map(|guess| guess.x.clamp(0.0, 100.0));
-            Estimate::of_levels(member, evidence, levels, guesses.map(|guess| guess.p.sqrt()))
+            estimate(member, evidence, &follow(question, &seen, &RULES, false).0)
         };
         question.members.iter().zip(rounds(question, evidence)).map(of).collect()
     }

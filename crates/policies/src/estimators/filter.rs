@@ -1,13 +1,13 @@
 //! The Kalman filter of one member: what the base expects of its levels by what its group-mates spent, and
 //! what of its reports that lets through.
 
-use teaming::{Evidence, Expected};
+use teaming::{Estimate, Evidence, Expected, Level, Member, PolicyError, Question, Rest};
 
 use super::counts::Counts;
 use super::rounds::Seen;
 
-/// What is expected of the levels if the base expects nothing: those of the paper's team.
-const INITIAL: [Expected; 2] = [Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }];
+/// What is expected of a level if the base expects nothing.
+const UNKNOWN: Expected = Expected { mean: 80.0, sd: 20.0 };
 
 /// How much a filter lets through.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,59 +44,82 @@ impl Guess {
     }
 }
 
-/// Follows the levels of one member. `hears` tells whether its own reports count. Returns the guesses of both
+/// Follows the levels of one member. `hears` tells whether its own reports count. Returns the guesses of all
 /// levels, and how many reports of a level passed and failed.
-pub(super) fn follow(evidence: &Evidence, seen: &[Seen], rules: &Rules, hears: bool) -> ([Guess; 2], Counts) {
-    let initial = evidence.initial.unwrap_or(INITIAL);
-    let mut guesses = initial.map(|expected| Guess { x: expected.mean, p: expected.sd * expected.sd });
+pub(super) fn follow(
+    question: &Question,
+    seen: &[Seen<'_>],
+    rules: &Rules,
+    hears: bool,
+) -> (Vec<Guess>, Counts) {
+    let at_first = |level: &Level| {
+        let Expected { mean, sd } = level.expected.unwrap_or(UNKNOWN);
+        Guess { x: mean, p: sd * sd }
+    };
+    let mut guesses: Vec<Guess> = question.levels.iter().map(at_first).collect();
     let mut passes = Counts::default();
     for (number, seen) in seen.iter().enumerate() {
         if number > 0 {
-            predict(&mut guesses, seen, rules.q, evidence.rest_fills_one);
+            predict(&mut guesses, seen, rules.q, question.rest);
         }
         let Some(said) = seen.said.filter(|_| hears) else { continue };
         for (guess, z) in guesses.iter_mut().zip(said.levels) {
-            passes.add(f64::from(u8::from(guess.hear(z, rules))));
+            passes.add(f64::from(u8::from(guess.hear(*z, rules))));
         }
     }
     (guesses, passes)
 }
 
-/// What a round makes of the levels: they fall as those of the mates did. A rest fills them, or the lower
-/// one of them.
-fn predict(guesses: &mut [Guess; 2], seen: &Seen, q: f64, rest_fills_one: bool) {
-    let used = seen.used;
-    for (guess, used) in guesses.iter_mut().zip(used) {
+/// What a round makes of the levels: they fall as those of the mates did. A rest fills them, or the lowest
+/// of them.
+fn predict(guesses: &mut [Guess], seen: &Seen<'_>, q: f64, rest: Rest) {
+    for (level, guess) in guesses.iter_mut().enumerate() {
+        let used = seen.used.get(level).copied().unwrap_or_default();
         *guess = Guess { x: guess.x - used, p: guess.p + q };
     }
     if seen.rested {
-        let lower = usize::from(guesses[1].x < guesses[0].x);
+        let lower = |low: usize, level: usize| if guesses[level].x < guesses[low].x { level } else { low };
+        let lowest = (0..guesses.len()).fold(0, lower);
         for (level, guess) in guesses.iter_mut().enumerate() {
-            if !rest_fills_one || level == lower {
+            if rest == Rest::All || level == lowest {
                 *guess = Guess { x: 100.0, p: q };
             }
         }
     }
 }
 
+/// The estimate of a member by these guesses.
+pub(super) fn estimate(
+    member: &Member,
+    evidence: &Evidence,
+    guesses: &[Guess],
+) -> Result<Estimate, PolicyError> {
+    let levels = guesses.iter().map(|guess| guess.x.clamp(0.0, 100.0)).collect();
+    Estimate::of_levels(member, evidence, levels, guesses.iter().map(|guess| guess.p.sqrt()).collect())
+}
+
 #[cfg(test)]
 mod tests {
-    use teaming::Evidence;
-
     use super::super::rounds::Said;
     use super::*;
 
     const RULES: Rules = Rules { q: 4.0, r: 25.0, gate: 6.634_896_601_021_214_5 };
 
-    fn seen(said: Option<f64>, used: f64, rested: bool) -> Seen {
-        let said = said.map(|energy| Said { levels: [energy, 90.0], sd: [0.0; 2] });
-        Seen { said, used: [used, 0.0], rested }
+    /// A question about the levels of the paper's team.
+    fn question(rest: Rest) -> Question {
+        let mut levels = Level::energy_and_hp();
+        levels[1].expected = Some(Expected { mean: 90.0, sd: 10.0 });
+        Question { levels, rest, ..Question::default() }
+    }
+
+    fn seen(said: Option<f64>, used: f64, rested: bool) -> Seen<'static> {
+        let said = said.map(|energy| Said { levels: vec![energy, 90.0].leak(), sd: &[0.0; 2] });
+        Seen { said, used: vec![used, 0.0], rested }
     }
 
     /// The guess of energy after each round, and the passes of energy alone.
-    fn energies(rounds: &[Seen]) -> Vec<[f64; 2]> {
-        let evidence = Evidence::default();
-        let of = |count| follow(&evidence, &rounds[..count], &RULES, true).0[0];
+    fn energies(rounds: &[Seen<'_>]) -> Vec<[f64; 2]> {
+        let of = |count| follow(&question(Rest::All), &rounds[..count], &RULES, true).0[0];
         (1..=rounds.len()).map(|count| [of(count).x, of(count).p]).collect()
     }
 
@@ -111,7 +134,7 @@ mod tests {
     #[test]
     fn levels_are_filtered_as_computed_elsewhere() {
         let used = [0.0, 12.0, 12.0, 12.0];
-        let rounds: Vec<Seen> =
+        let rounds: Vec<Seen<'_>> =
             [75.0, 62.0, 95.0, 41.0].iter().zip(used).map(|(z, used)| seen(Some(*z), used, false)).collect();
         check(
             &energies(&rounds),
@@ -122,7 +145,7 @@ mod tests {
                 [39.707_158_298_719_91, 11.443_076_100_949_744],
             ],
         );
-        let (_, passes) = follow(&Evidence::default(), &rounds, &RULES, true);
+        let (_, passes) = follow(&question(Rest::All), &rounds, &RULES, true);
         assert!((passes.good - 7.0).abs() < 1e-12 && (passes.bad - 1.0).abs() < 1e-12, "{passes:?}");
     }
 
@@ -151,9 +174,8 @@ mod tests {
     #[test]
     fn where_a_rest_fills_one_level_the_other_stays() {
         let rounds = [seen(Some(1.0), 0.0, false), seen(None, 17.0, true)];
-        let evidence = Evidence { rest_fills_one: true, ..Evidence::default() };
-        let (guesses, passes) = follow(&evidence, &rounds, &RULES, false);
-        let expected = [Guess { x: 100.0, p: 4.0 }, Guess { x: 90.0, p: 104.0 }];
+        let (guesses, passes) = follow(&question(Rest::Low), &rounds, &RULES, false);
+        let expected = vec![Guess { x: 100.0, p: 4.0 }, Guess { x: 90.0, p: 104.0 }];
         assert_eq!((guesses, passes), (expected, Counts::default()));
     }
 }

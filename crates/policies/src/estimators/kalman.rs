@@ -4,14 +4,14 @@
 //! `P- = P + q`; after a rest `x- = 100`, `P- = q`; at first `x-` and `P-` are what the base expects. With
 //! `S = P- + r`, a report `z` fails if `(z - x-)^2 / S > gate`, and changes nothing then; else `K = P- / S`,
 //! `x = x- + K (z - x-)`, `P = (1 - K) P-`. Trust is the mean of a Beta distribution of passes and failures
-//! of both levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
+//! of all levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
 //! chi-square distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with
 //! Applications to Tracking and Navigation*, 5.4).
 
 use teaming::estimate::as_said;
 use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
-use super::filter::{Rules, follow};
+use super::filter::{Rules, estimate, follow};
 use super::rounds::rounds;
 
 teaming::options! {
@@ -50,11 +50,8 @@ impl Estimator for Kalman {
         let Self { q, r, gate } = *self;
         let rules = Rules { q, r, gate };
         let of = |(member, seen): (_, Vec<_>)| {
-            let (guesses, passes) = follow(evidence, &seen, &rules, true);
-            let levels = guesses.map(|guess| guess.x.clamp(0.0, 100.0));
-            let estimate =
-                Estimate::of_levels(member, evidence, levels, guesses.map(|guess| guess.p.sqrt()))?;
-            Ok(Estimate { trust: passes.mean(), ..estimate })
+            let (guesses, passes) = follow(question, &seen, &rules, true);
+            Ok(Estimate { trust: passes.mean(), ..estimate(member, evidence, &guesses)? })
         };
         question.members.iter().zip(rounds(question, evidence)).map(of).collect()
     }

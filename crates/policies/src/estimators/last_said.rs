@@ -2,16 +2,17 @@
 
 use teaming::estimate::as_said;
 use teaming::ids::place_of;
-use teaming::{Estimate, Evidence, PolicyError, Question};
+use teaming::{Estimate, Evidence, Level, PolicyError, Question};
 
 /// The members as they were said last, with the standard deviations of their gauges, believed. A robot that
 /// was never heard has the deviations that the base expects.
 pub(super) fn last_said(question: &Question) -> Result<Vec<Estimate>, PolicyError> {
     let mut estimates = as_said(question)?;
     let Some(evidence) = &question.evidence else { return Ok(estimates) };
-    let never_heard = evidence.initial.map_or([0.0; 2], |initial| initial.map(|expected| expected.sd));
+    let expected = |level: &Level| level.expected.map_or(0.0, |expected| expected.sd);
+    let never_heard: Vec<f64> = question.levels.iter().map(expected).collect();
     for (estimate, last) in estimates.iter_mut().zip(last_reports(question, evidence)) {
-        estimate.sd = last.map_or(never_heard, |last| evidence.reports[last].sd);
+        estimate.sd.clone_from(last.map_or(&never_heard, |last| &evidence.reports[last].sd));
     }
     Ok(estimates)
 }

@@ -31,7 +31,7 @@ impl Outcomes {
     /// The outcomes of some evidence. A speed that is `tolerance` of top speed from what was said is an
     /// outcome of 0. Ratings of a robot whose body is not known do not count.
     pub(super) fn of(question: &Question, evidence: &Evidence, tolerance: f64) -> Self {
-        let own = SaidRounds::new(evidence).energy_outcomes(&question.history).into_iter();
+        let own = SaidRounds::new(question, evidence).energy_outcomes(&question.history).into_iter();
         let mut all: Vec<Outcome> = own
             .map(|own| Outcome { of: own.robot, by: None, round: own.round, outcome: own.outcome })
             .collect();

@@ -14,6 +14,7 @@
 
 use rne_core::{NeedDistribution, NeedVector, NeedWeights, relative_entropy};
 use teaming::evidence::DOUBTED_POINTS;
+use teaming::levels::ENERGY;
 use teaming::{
     Body, Estimate, Estimator, EstimatorKind, Evidence, Member, PolicyError, Question, SaidRounds, Used,
 };
@@ -53,7 +54,7 @@ impl Estimator for Rne {
             let member = &question.members[place];
             let Some(body) = evidence.body(member.id) else { continue };
             let (sum, count) = &mut sums[place];
-            *sum += distrust(member, body, &weights, look)?;
+            *sum += distrust(member, body, &weights, &look)?;
             *count += 1;
         }
         let trust = |(sum, count): (f64, u32)| {
@@ -75,22 +76,23 @@ fn scaled_weights(question: &Question) -> Vec<f64> {
 }
 
 /// What a robot said of its levels, and what was measured of them.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 struct Look {
-    said: [f64; 2],
-    measured: [f64; 2],
+    said: Vec<f64>,
+    measured: Vec<f64>,
 }
 
 /// RNE from what was said to what was measured, in nats.
-fn distrust(member: &Member, body: &Body, weights: &NeedWeights, look: Look) -> Result<f64, PolicyError> {
-    let distribution = |levels: [f64; 2]| {
+fn distrust(member: &Member, body: &Body, weights: &NeedWeights, look: &Look) -> Result<f64, PolicyError> {
+    let distribution = |levels: &[f64]| {
         let mut needs = member.needs.values().to_vec();
         for follows in &body.needs {
             needs[follows.need.index()] = follows.at(levels);
         }
         NeedDistribution::of_agent(&NeedVector::new(needs)?, weights)
     };
-    let rne = distribution(look.said).and_then(|said| relative_entropy(&said, &distribution(look.measured)?));
+    let rne =
+        distribution(&look.said).and_then(|said| relative_entropy(&said, &distribution(&look.measured)?));
     let rne = rne.map_err(|source| PolicyError::Needs { id: member.id, source })?;
     Ok(rne.nats().unwrap_or(f64::INFINITY))
 }
@@ -98,38 +100,54 @@ fn distrust(member: &Member, body: &Body, weights: &NeedWeights, look: Look) -> 
 /// The looks at members in the rounds in which one of their levels was measured, by the places of the
 /// members.
 fn looks(question: &Question, evidence: &Evidence) -> Vec<(usize, Look)> {
-    let said = SaidRounds::new(evidence);
+    let said = SaidRounds::new(question, evidence);
+    let energy_at = question.level(ENERGY);
     let seen = measured_hp(question, evidence);
     let mut looks = Vec::new();
     for round in &question.history {
         for used in said.used(round) {
             let Some(member) = member_of(question, used.robot) else { continue };
             let Some(begun) = said.first(used.robot, round.round) else { continue };
-            let energy = energy_look(evidence, &said, used, round.round);
+            let energy = energy_at.and_then(|at| {
+                let threshold = question.levels[at.index()].threshold;
+                Some((at, energy_look(&said, &used, round.round, (at.index(), threshold))?))
+            });
             let found = seen[member].binary_search_by_key(&round.round, |(round, _)| *round);
-            let hp = found.ok().map(|place| seen[member][place].1);
-            if energy.is_some() || hp.is_some() {
-                let [said, measured] = energy.unwrap_or([begun[0]; 2]);
-                let hp = hp.unwrap_or(begun[1]);
-                looks.push((member, Look { said: [said, begun[1]], measured: [measured, hp] }));
+            let slowing = evidence.body(used.robot).map(|body| body.slowed_by);
+            let slowing = slowing.zip(found.ok().map(|place| seen[member][place].1));
+            if energy.is_none() && slowing.is_none() {
+                continue;
             }
+            let mut look = Look { said: begun.to_vec(), measured: begun.to_vec() };
+            if let Some((at, [said, measured])) = energy {
+                (look.said[at.index()], look.measured[at.index()]) = (said, measured);
+            }
+            if let Some((at, measured)) = slowing {
+                look.measured[at.index()] = measured;
+            }
+            looks.push((member, look));
         }
     }
     looks
 }
 
 /// The energy that a robot said to have after a round, and that it should have, in percent.
-fn energy_look(evidence: &Evidence, said: &SaidRounds<'_>, used: Used, round: u32) -> Option<[f64; 2]> {
+fn energy_look(
+    said: &SaidRounds<'_>,
+    used: &Used,
+    round: u32,
+    (energy, threshold): (usize, f64),
+) -> Option<[f64; 2]> {
     let entry = said.entry(used.robot, round)?;
-    let expected = said.first(used.robot, round)?[0] - used.points?[0];
+    let expected = said.first(used.robot, round)?[energy] - used.points.as_ref()?[energy];
     if entry.turned_back || entry.lost {
-        let was_far = expected > evidence.energy_threshold + DOUBTED_POINTS;
-        return was_far.then_some([expected, evidence.energy_threshold]);
+        let was_far = expected > threshold + DOUBTED_POINTS;
+        return was_far.then_some([expected, threshold]);
     }
     if entry.rested {
         return None;
     }
-    Some([said.first(used.robot, round + 1)?[0], expected.max(0.0)])
+    Some([said.first(used.robot, round + 1)?[energy], expected.max(0.0)])
 }
 
 /// For each member, the medians of the health that its mates measured in percent, by round.
@@ -137,7 +155,7 @@ fn measured_hp(question: &Question, evidence: &Evidence) -> Vec<Vec<(u32, f64)>>
     let mut all: Vec<Vec<(u32, f64)>> = vec![Vec::new(); question.members.len()];
     for rating in &evidence.ratings {
         let (member, body) = (member_of(question, rating.of), evidence.body(rating.of));
-        let hp = body.and_then(|body| rating.measured_hp(body.top_mps, body.floor));
+        let hp = body.and_then(|body| rating.measured_level(body.top_mps, body.floor));
         if let Some((member, hp)) = member.zip(hp) {
             all[member].push((rating.round, hp));
         }
@@ -147,23 +165,23 @@ fn measured_hp(question: &Question, evidence: &Evidence) -> Vec<Vec<(u32, f64)>>
 
 #[cfg(test)]
 mod tests {
-    use teaming::{Level, LevelNeed, NeedId, RoleId};
+    use teaming::{LevelId, LevelNeed, NeedId, RoleId};
 
     use super::*;
 
     /// The body and the fresh needs of a robot of the paper's scenario: hp, v, sen, eng, res, cap, obs.
     fn robot(at_100: [f64; 7]) -> (Member, Body) {
         let follows = |need: u16| {
-            let (level, at_100) =
-                (if need == 3 { Level::Energy } else { Level::Health }, at_100[usize::from(need)]);
+            let (level, at_100) = (LevelId(u16::from(need != 3)), at_100[usize::from(need)]);
             let at_0 = if [0, 3].contains(&need) { 0.0 } else { at_100 / 2.0 };
             LevelNeed { need: NeedId(need), level, at_0, at_100 }
         };
         let needs = [0, 1, 2, 3, 6].map(follows).to_vec();
-        let body = Body { robot: 0, top_mps: at_100[1], floor: 0.5, carries: true, guides: false, needs };
+        let (top_mps, slowed_by, floor) = (at_100[1], LevelId(1), 0.5);
+        let body = Body { robot: 0, top_mps, slowed_by, floor, carries: true, guides: false, needs };
         let needs = NeedVector::new(at_100.to_vec()).unwrap();
-        let (energy_level, hp_level) = (Some(100.0), Some(100.0));
-        (Member { id: 0, role: RoleId(0), home: [0.0; 2], needs, energy_level, hp_level }, body)
+        let levels = vec![Some(100.0); 2];
+        (Member { id: 0, role: RoleId(0), home: [0.0; 2], needs, levels }, body)
     }
 
     /// Reference: an independent implementation in Python.
@@ -187,7 +205,8 @@ mod tests {
             (&carrier, [40.0, 45.0], [80.0, 90.0], 0.043_160_850_615_181_64, 0.957_757_321_821_967),
         ];
         for ((member, body), said, measured, nats, trust) in cases {
-            let found = distrust(member, body, &weights, Look { said, measured }).unwrap();
+            let look = Look { said: said.to_vec(), measured: measured.to_vec() };
+            let found = distrust(member, body, &weights, &look).unwrap();
             assert!((found / nats - 1.0).abs() < 1e-9, "{found} {nats}");
             assert!((libm::exp(-found) / trust - 1.0).abs() < 1e-9);
         }

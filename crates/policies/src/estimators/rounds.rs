@@ -2,35 +2,35 @@
 //! said that the round before cost them.
 
 use teaming::said::is_after;
-use teaming::{Evidence, Question, SaidRounds};
+use teaming::{Evidence, Level, Question, SaidRounds};
 
 use super::last_said::member_of;
 
 /// One member at the question of one round.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Seen {
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Seen<'e> {
     /// What it said last, of what was heard since the question before and not sent before what was heard
     /// then.
-    pub(super) said: Option<Said>,
-    /// The median of what its fit group-mates said that they spent in the round before, energy and health in
-    /// percent points; 0 where nobody can tell, as in the first round and for a robot that stayed at home.
-    pub(super) used: [f64; 2],
+    pub(super) said: Option<Said<'e>>,
+    /// The median of what its fit group-mates said that they spent of each level in the round before, in
+    /// percent points; empty where nobody can tell, as in the first round and for a robot that stayed at home.
+    pub(super) used: Vec<f64>,
     /// Whether it rested since the question before.
     pub(super) rested: bool,
 }
 
 /// What a robot said.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Said {
-    /// Levels of energy and health, in percent.
-    pub(super) levels: [f64; 2],
+pub(super) struct Said<'e> {
+    /// Its levels, in the order of the table of levels.
+    pub(super) levels: &'e [f64],
     /// Standard deviations of the gauges, in percent points.
-    pub(super) sd: [f64; 2],
+    pub(super) sd: &'e [f64],
 }
 
 /// For each member, its questions from the first since which the base knows it.
-pub(super) fn rounds(question: &Question, evidence: &Evidence) -> Vec<Vec<Seen>> {
-    let said = SaidRounds::new(evidence);
+pub(super) fn rounds<'e>(question: &Question, evidence: &'e Evidence) -> Vec<Vec<Seen<'e>>> {
+    let said = SaidRounds::new(question, evidence);
     let count = question.history.len() + 1;
     let mut seen = vec![vec![Seen::default(); count]; question.members.len()];
     let mut takes_part = vec![vec![false; count]; question.members.len()];
@@ -45,7 +45,7 @@ pub(super) fn rounds(question: &Question, evidence: &Evidence) -> Vec<Vec<Seen>>
     }
     hear(question, evidence, &said, &mut seen);
     for ((member, seen), takes_part) in question.members.iter().zip(&mut seen).zip(takes_part) {
-        stay_at_home(evidence, seen, &takes_part);
+        stay_at_home(&question.levels, seen, &takes_part);
         let since = evidence.known_since.get(&member.id).copied().unwrap_or(0);
         let unknown = question.history.iter().filter(|round| round.round < since).count();
         seen.drain(..unknown);
@@ -54,7 +54,7 @@ pub(super) fn rounds(question: &Question, evidence: &Evidence) -> Vec<Vec<Seen>>
 }
 
 /// Sorts the reports into the questions before which they were heard.
-fn hear(question: &Question, evidence: &Evidence, said: &SaidRounds<'_>, seen: &mut [Vec<Seen>]) {
+fn hear<'e>(question: &Question, evidence: &'e Evidence, said: &SaidRounds<'_>, seen: &mut [Vec<Seen<'e>>]) {
     let left_s = |number: usize| {
         let round = &question.history[number];
         let mut members = round.groups.iter().flat_map(|group| &group.members);
@@ -73,15 +73,14 @@ fn hear(question: &Question, evidence: &Evidence, said: &SaidRounds<'_>, seen: &
         }
         last_s[member] = report.sent_s;
         let number = starts.partition_point(|start| is_after(report.heard_s, *start));
-        let levels = [report.energy_level, report.hp_level];
-        seen[member][number].said = Some(Said { levels, sd: report.sd });
+        seen[member][number].said = Some(Said { levels: &report.levels, sd: &report.sd });
     }
 }
 
 /// A robot that was in no group of a round stayed at home. It rested if it had said that it is tired.
-fn stay_at_home(evidence: &Evidence, seen: &mut [Seen], takes_part: &[bool]) {
+fn stay_at_home(levels: &[Level], seen: &mut [Seen<'_>], takes_part: &[bool]) {
     let is_tired =
-        |said: Said| said.levels[0] < evidence.energy_threshold || said.levels[1] < evidence.hp_threshold;
+        |said: Said<'_>| said.levels.iter().zip(levels).any(|(said, level)| *said < level.threshold);
     let mut last = None;
     for (seen, takes_part) in seen.iter_mut().zip(takes_part) {
         seen.rested |= !takes_part && last.is_some_and(is_tired);

@@ -7,7 +7,7 @@
 use teaming::estimate::as_said;
 use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
-use super::rounds::{Said, Seen, rounds};
+use super::rounds::{Seen, rounds};
 
 teaming::options! {
     /// Smooths the levels that each robot said; believes everybody. A robot that was never heard stays as the
@@ -39,7 +39,7 @@ impl Estimator for Smooth {
         let Some(evidence) = &question.evidence else { return Ok(estimates) };
         let all = estimates.iter_mut().zip(&question.members).zip(rounds(question, evidence));
         for ((estimate, member), seen) in all {
-            if let Some(Said { levels, sd }) = smoothed(&seen, self.alpha) {
+            if let Some([levels, sd]) = smoothed(&seen, self.alpha) {
                 *estimate = Estimate::of_levels(member, evidence, levels, sd)?;
             }
         }
@@ -47,34 +47,42 @@ impl Estimator for Smooth {
     }
 }
 
-fn smoothed(seen: &[Seen], alpha: f64) -> Option<Said> {
-    let mix = |before: Said, said: Said| Said {
-        levels: [0, 1].map(|level| alpha * said.levels[level] + (1.0 - alpha) * before.levels[level]),
-        sd: [0, 1].map(|level| {
-            let [new, old] = [alpha * said.sd[level], (1.0 - alpha) * before.sd[level]];
-            (new * new + old * old).sqrt()
-        }),
-    };
-    seen.iter().filter_map(|seen| seen.said).reduce(mix)
+/// The levels and their standard deviations, once a report was heard.
+fn smoothed(seen: &[Seen<'_>], alpha: f64) -> Option<[Vec<f64>; 2]> {
+    let mut said = seen.iter().filter_map(|seen| seen.said);
+    let first = said.next()?;
+    let [mut levels, mut sds] = [first.levels, first.sd].map(<[f64]>::to_vec);
+    for said in said {
+        for (level, said) in levels.iter_mut().zip(said.levels) {
+            *level = alpha * said + (1.0 - alpha) * *level;
+        }
+        for (sd, said) in sds.iter_mut().zip(said.sd) {
+            let [new, old] = [alpha * said, (1.0 - alpha) * *sd];
+            *sd = (new * new + old * old).sqrt();
+        }
+    }
+    Some([levels, sds])
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::rounds::Said;
     use super::*;
 
-    fn of(reports: &[f64], alpha: f64) -> Said {
-        let said = |level: &f64| Some(Said { levels: [*level, 90.0], sd: [2.0, 0.0] });
-        let seen: Vec<Seen> =
+    /// The level and its standard deviation.
+    fn of(reports: &[f64], alpha: f64) -> [f64; 2] {
+        let said = |level| Some(Said { levels: std::slice::from_ref(level), sd: &[2.0] });
+        let seen: Vec<Seen<'_>> =
             reports.iter().map(|level| Seen { said: said(level), ..Seen::default() }).collect();
-        smoothed(&seen, alpha).unwrap()
+        smoothed(&seen, alpha).unwrap().map(|values| values[0])
     }
 
     /// Reference: an independent implementation in Python.
     #[test]
     fn reports_are_smoothed_as_computed_elsewhere() {
-        assert!((of(&[80.0, 70.0, 75.0, 40.0], 0.4).levels[0] / 61.359_999_999_999_99 - 1.0).abs() < 1e-9);
-        assert!((of(&[80.0, 70.0], 1.0).levels[0] - 70.0).abs() < 1e-12);
+        assert!((of(&[80.0, 70.0, 75.0, 40.0], 0.4)[0] / 61.359_999_999_999_99 - 1.0).abs() < 1e-9);
+        assert!((of(&[80.0, 70.0], 1.0)[0] - 70.0).abs() < 1e-12);
         // 0.4^2 4 + 0.6^2 4 = 2.08
-        assert!((of(&[80.0, 70.0], 0.4).sd[0] - 2.08_f64.sqrt()).abs() < 1e-12);
+        assert!((of(&[80.0, 70.0], 0.4)[1] - 2.08_f64.sqrt()).abs() < 1e-12);
     }
 }

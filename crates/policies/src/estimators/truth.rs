@@ -1,9 +1,9 @@
 //! `Truth`: every level as it is. A control: what a perfect estimator would be worth.
 
 use teaming::estimate::as_said;
-use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
+use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question, Truth as Told};
 
-/// Takes the true levels of the evidence, with the needs that follow from them; believes everybody. It is no
+/// Takes the levels as they really are, with the needs that follow from them; believes everybody. It is no
 /// estimator that a team could have.
 #[derive(Debug, Clone, Copy)]
 pub struct Truth;
@@ -17,12 +17,26 @@ pub fn kind() -> EstimatorKind {
 
 impl Estimator for Truth {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
+        let policy = || "Truth".to_owned();
+        if question.evidence.is_none() {
+            as_said(question)
+        } else {
+            Err(PolicyError::NoTruth { policy: policy() })
+        }
+    }
+
+    fn needs_truth(&self) -> bool {
+        true
+    }
+
+    fn estimate_with(&self, question: &Question, truth: Told<'_>) -> Result<Vec<Estimate>, PolicyError> {
         let mut estimates = as_said(question)?;
         let Some(evidence) = &question.evidence else { return Ok(estimates) };
         for (estimate, member) in estimates.iter_mut().zip(&question.members) {
-            if let Ok(place) = evidence.truth.binary_search_by_key(&member.id, |levels| levels.robot) {
-                let levels = [evidence.truth[place].energy_level, evidence.truth[place].hp_level];
-                *estimate = Estimate::of_levels(member, evidence, levels, [0.0; 2])?;
+            let levels = truth.of(member.id).and_then(|is| is.levels.iter().copied().collect());
+            if let Some(levels) = levels {
+                let sd = std::mem::take(&mut estimate.sd);
+                *estimate = Estimate::of_levels(member, evidence, levels, sd)?;
             }
         }
         Ok(estimates)

@@ -36,14 +36,16 @@ impl Estimator for Wmsr {
         let was_heard = was_heard(question, evidence);
         let all = question.members.iter().zip(measured(question, evidence)).zip(was_heard);
         for (estimate, ((member, values), was_heard)) in estimates.iter_mut().zip(all) {
-            let own = Some(estimate.levels[1]).filter(|_| was_heard);
+            let Some(level) = evidence.body(member.id).map(|body| body.slowed_by.index()) else { continue };
+            let own = estimate.levels.get(level).copied().filter(|_| was_heard);
             let kept = kept(own, values, self.f as usize);
             let Some(mean) = mean(&kept) else { continue };
             let sd = (kept.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>()
                 / kept.len() as f64)
                 .sqrt();
-            let (levels, sd) = ([estimate.levels[0], mean], [estimate.sd[0], sd]);
-            *estimate = Estimate::of_levels(member, evidence, levels, sd)?;
+            let (mut levels, mut sds) = (estimate.levels.clone(), estimate.sd.clone());
+            (levels[level], sds[level]) = (mean, sd);
+            *estimate = Estimate::of_levels(member, evidence, levels, sds)?;
         }
         Ok(estimates)
     }
@@ -69,7 +71,7 @@ fn measured(question: &Question, evidence: &Evidence) -> Vec<Vec<f64>> {
     let mut last: Vec<(u32, Vec<f64>)> = vec![(0, Vec::new()); question.members.len()];
     for rating in &evidence.ratings {
         let body = evidence.body(rating.of);
-        let hp = body.and_then(|body| rating.measured_hp(body.top_mps, body.floor));
+        let hp = body.and_then(|body| rating.measured_level(body.top_mps, body.floor));
         let Some((member, hp)) = member_of(question, rating.of).zip(hp) else { continue };
         let (round, values) = &mut last[member];
         if rating.round > *round {

@@ -9,6 +9,7 @@ use crate::facts::missing;
 use teaming::decision::Suitability;
 use teaming::error::PolicyError;
 use teaming::ids::TaskId;
+use teaming::levels::{ENERGY, HP};
 use teaming::question::{Member, Question};
 
 impl Rne {
@@ -35,8 +36,10 @@ impl Rne {
                 HardRule::Capability => members()
                     .map(|m| m.needs.values().iter().zip(&scaled).map(|(n, w)| n * w).sum::<f64>())
                     .sum(),
-                HardRule::MeanEnergy => mean(sum_of(members(), "the energy level", |m| m.energy_level)?),
-                HardRule::MeanHp => mean(sum_of(members(), "the HP level", |m| m.hp_level)?),
+                HardRule::MeanEnergy => {
+                    mean(sum_of(members(), "the energy level", |m| question.level_of(m, ENERGY))?)
+                }
+                HardRule::MeanHp => mean(sum_of(members(), "the HP level", |m| question.level_of(m, HP))?),
             }))
         };
         groups.iter().map(value).collect()

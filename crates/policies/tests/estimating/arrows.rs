@@ -1,15 +1,17 @@
 //! Policies behind estimators: `RULE <- ESTIMATOR | USE`.
 
-use teaming::{Decision, GroupSizes, MadePolicy, PolicyError, Question, Quota, RoleId, TaskId};
+use teaming::{Asked, Decision, GroupSizes, MadePolicy, PolicyError, Question, Quota, RoleId, TaskId};
 
-use crate::support::{BRAGGER, CHEAT, question};
+use crate::support::{BRAGGER, CHEAT, question, team};
 
 fn made(text: &str) -> MadePolicy {
     policies::standard().parse(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn decide(text: &str, question: &Question) -> Decision {
-    let decision = made(text).decide(question).unwrap_or_else(|error| panic!("{text}: {error}"));
+    let decision = made(text)
+        .decide(Asked::of(question).knowing(&team()))
+        .unwrap_or_else(|error| panic!("{text}: {error}"));
     decision.assignment.check(question).unwrap_or_else(|error| panic!("{text}: {error}"));
     decision
 }
@@ -52,7 +54,7 @@ fn a_discounted_robot_counts_as_the_mean_of_the_trusted() {
     let mean = hp.iter().sum::<f64>() / hp.len() as f64;
     let judged = TrustUse::Discount.judged(&question, estimates.clone()).unwrap();
     let bragger = &judged.question.members[BRAGGER as usize];
-    assert!((bragger.hp_level.unwrap() - mean).abs() < 1e-9);
+    assert!((bragger.levels[1].unwrap() - mean).abs() < 1e-9);
     assert!((bragger.needs.values()[0] - mean).abs() < 1e-9, "the need follows");
     assert!((bragger.needs.values()[3] - 5.0).abs() < 1e-12, "what it can carry does not");
     assert_eq!(hp.len(), 5);

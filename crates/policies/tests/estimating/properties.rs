@@ -4,16 +4,16 @@ use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
-use teaming::{Estimate, Evidence, Question};
+use teaming::{Estimate, Evidence, Extent, Question, Rest};
 
-use crate::support::{BRAGGER, CHEAT, ROUND, estimates, names, question, said_levels};
+use crate::support::{BRAGGER, CHEAT, ROUND, estimates, estimates_where, names, question, said_levels, team};
 
 fn trust(estimator: &str) -> Vec<f64> {
     estimates(estimator, &question()).iter().map(|estimate| estimate.trust).collect()
 }
 
-fn levels(estimator: &str, robot: u32) -> [f64; 2] {
-    estimates(estimator, &question())[robot as usize].levels
+fn levels(estimator: &str, robot: u32) -> Vec<f64> {
+    estimates(estimator, &question())[robot as usize].levels.clone()
 }
 
 fn near(found: f64, expected: f64) {
@@ -42,8 +42,8 @@ fn without_evidence_everybody_is_as_said_and_believed() {
         let found = estimates(&name, &question);
         for (member, estimate) in question.members.iter().zip(found) {
             let expected = Estimate {
-                levels: said_levels(member.id, ROUND),
-                sd: [0.0; 2],
+                levels: said_levels(member.id, ROUND).to_vec(),
+                sd: vec![0.0; 2],
                 needs: member.needs.clone(),
                 trust: 1.0,
             };
@@ -55,10 +55,10 @@ fn without_evidence_everybody_is_as_said_and_believed() {
 #[test]
 fn a_member_without_a_level_is_named() {
     let mut question = question();
-    question.members[3].hp_level = None;
+    question.members[3].levels[1] = None;
     let last = policies::standard().estimator("LastReport").unwrap();
     let error = last.it.estimate(&question).unwrap_err().to_string();
-    assert_eq!(error, "an estimate needs the HP level of robot 3, which is missing");
+    assert_eq!(error, "an estimate needs the level hp of robot 3, which is missing");
 }
 
 /// The bragger has 30 % health, said 100 %, and lost a point a round; the cheat has 43 % energy less than
@@ -138,9 +138,9 @@ fn a_robot_that_rests_at_home_is_expected_to_be_full() {
         .for_each(|group| group.members.retain(|m| m.id != 0));
     evidence(&mut question).ledger.retain(|entry| (entry.robot, entry.round) != (0, ROUND - 1));
     let last = |round| move |report: &&mut teaming::LevelReport| report.of == 0 && report.round == round;
-    evidence(&mut question).reports.iter_mut().find(last(ROUND)).unwrap().energy_level = 100.0;
+    evidence(&mut question).reports.iter_mut().find(last(ROUND)).unwrap().levels[0] = 100.0;
     assert!(estimates("Kalman", &question)[0].levels[0] < 60.0, "it was not tired, and says 100");
-    evidence(&mut question).reports.iter_mut().find(last(ROUND - 1)).unwrap().energy_level = 19.0;
+    evidence(&mut question).reports.iter_mut().find(last(ROUND - 1)).unwrap().levels[0] = 19.0;
     assert!(estimates("Kalman", &question)[0].levels[0] > 99.0);
 }
 
@@ -149,8 +149,9 @@ fn a_robot_with_a_new_name_begins_anew() {
     let mut question = question();
     let evidence = evidence(&mut question);
     evidence.known_since.insert(0, ROUND);
-    let extent = evidence.extent(ROUND, evidence.known_since.clone());
-    *evidence = evidence.as_of(&extent);
+    let (reports, ratings, ledger) = (evidence.reports.len(), evidence.ratings.len(), evidence.ledger.len());
+    let known_since = evidence.known_since.clone();
+    *evidence = evidence.as_of(&Extent { round: ROUND, reports, ratings, ledger, known_since });
     for round in &mut question.history {
         round.groups.iter_mut().for_each(|group| group.members.retain(|member| member.id != 0));
     }
@@ -196,8 +197,7 @@ fn drawn(seed: u64) -> Question {
     let evidence = evidence(&mut question);
     evidence.reports.retain(|_| draws.random_range(0..4_u32) > 0);
     for report in &mut evidence.reports {
-        (report.energy_level, report.hp_level) =
-            (draws.random_range(0.0..=100.0), draws.random_range(0.0..=100.0));
+        report.levels.fill_with(|| draws.random_range(0.0..=100.0));
         report.heard_s += draws.random_range(0.0..150.0);
     }
     evidence.ratings.retain(|_| draws.random_range(0..3_u32) > 0);
@@ -210,7 +210,7 @@ fn drawn(seed: u64) -> Question {
         entry.rested = draws.random_range(0..6_u32) == 0;
         entry.lost = draws.random_range(0..20_u32) == 0;
     }
-    evidence.rest_fills_one = draws.random();
+    question.rest = if draws.random() { Rest::Low } else { Rest::All };
     question
 }
 
@@ -249,10 +249,10 @@ proptest! {
     #[test]
     fn no_estimator_sees_the_truth(seed in any::<u64>()) {
         let question = drawn(seed);
-        let mut other = question.clone();
-        evidence(&mut other).truth.iter_mut().for_each(|levels| levels.energy_level /= 2.0);
+        let mut other = team();
+        other.iter_mut().for_each(|member| member.levels[0] = member.levels[0].map(|energy| energy / 2.0));
         for name in names() {
-            let is_same = estimates(&name, &question) == estimates(&name, &other);
+            let is_same = estimates(&name, &question) == estimates_where(&name, &question, &other);
             prop_assert_eq!(is_same, name != "Truth", "{}", name);
         }
     }

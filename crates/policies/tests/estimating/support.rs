@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use rne_core::NeedVector;
 use teaming::question::hardest_first;
 use teaming::{
-    Body, Estimate, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome,
-    Need, NeedId, Question, Quota, RandomSeed, Rating, RobotRound, RoleId, RoundOutcome, SCHEMA_VERSION,
-    Task, TaskId, TrueLevels,
+    Body, Estimate, Evidence, Expected, GroupOutcome, Level, LevelId, LevelNeed, LevelReport, Member,
+    MemberOutcome, Need, NeedId, Question, Quota, RandomSeed, Rating, RobotRound, RoleId, RoundOutcome, Task,
+    TaskId, Truth,
 };
 
 /// Says its health is 100 %, whatever it is.
@@ -26,6 +26,10 @@ const USED: [f64; 2] = [6.0, 1.0];
 const FLOOR: f64 = 0.5;
 
 const TOP_MPS: f64 = 2.0;
+
+const ENERGY: LevelId = LevelId(0);
+
+const HP: LevelId = LevelId(1);
 
 fn true_levels(robot: u32, round: u32) -> [f64; 2] {
     let before = f64::from(round - 1);
@@ -64,8 +68,7 @@ fn member(robot: u32) -> Member {
         role: role(robot),
         home: [f64::from(robot), 0.0],
         needs: needs(levels, robot),
-        energy_level: Some(levels[0]),
-        hp_level: Some(levels[1]),
+        levels: levels.map(Some).to_vec(),
     }
 }
 
@@ -74,22 +77,23 @@ fn body(robot: u32) -> Body {
     Body {
         robot,
         top_mps: TOP_MPS,
+        slowed_by: HP,
         floor: FLOOR,
         carries: robot < 6,
         guides: robot == 11,
         needs: vec![
-            follows(0, Level::Health, 0.0, 100.0),
-            follows(1, Level::Health, FLOOR * TOP_MPS, TOP_MPS),
-            follows(2, Level::Energy, 0.0, 150.0),
+            follows(0, HP, 0.0, 100.0),
+            follows(1, HP, FLOOR * TOP_MPS, TOP_MPS),
+            follows(2, ENERGY, 0.0, 150.0),
         ],
     }
 }
 
 fn report(robot: u32, round: u32) -> LevelReport {
     let sent_s = 100.0 * f64::from(round);
-    let [energy_level, hp_level] = said_levels(robot, round);
+    let levels = said_levels(robot, round).to_vec();
     let (of, by, heard_s, needs) = (robot, robot, sent_s, BTreeMap::new());
-    LevelReport { of, by, round, sent_s, heard_s, energy_level, hp_level, needs, sd: [2.0, 1.0] }
+    LevelReport { of, by, round, sent_s, heard_s, levels, needs, sd: vec![2.0, 1.0] }
 }
 
 fn rating(by: u32, of: u32, round: u32) -> Rating {
@@ -121,19 +125,11 @@ fn evidence() -> Evidence {
         };
         (0..12).flat_map(mates).map(move |(by, of)| rating(by, of, round))
     };
-    let is = |robot: u32| {
-        let [energy_level, hp_level] = true_levels(robot, ROUND);
-        TrueLevels { robot, energy_level, hp_level }
-    };
     Evidence {
-        energy_threshold: 20.0,
-        hp_threshold: 20.0,
         reports: (1..=ROUND).flat_map(|round| (0..12).map(move |robot| report(robot, round))).collect(),
         ratings: rounds.clone().flat_map(pairs).collect(),
         ledger: rounds.flat_map(|round| (0..12).map(move |robot| trip(robot, round))).collect(),
         bodies: (0..12).map(body).collect(),
-        initial: Some([Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }]),
-        truth: (0..12).map(is).collect(),
         ..Evidence::default()
     }
 }
@@ -142,9 +138,10 @@ fn evidence() -> Evidence {
 pub fn question() -> Question {
     let tasks = vec![Task::new("near", 1), Task::new("far", 2)];
     let order = hardest_first(tasks.iter().map(|task| task.difficulty));
+    let expected = [Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }];
+    let level = |(level, of)| Level { threshold: 20.0, expected: Some(of), ..level };
     let need = |name: &str| Need { name: name.to_owned(), weight: 1.0 };
     let question = Question {
-        schema_version: SCHEMA_VERSION,
         round: ROUND,
         roles: vec!["mover".to_owned(), "scout".to_owned()],
         needs: ["hp", "v", "eng", "cap"].map(need).to_vec(),
@@ -153,16 +150,29 @@ pub fn question() -> Question {
         members: (0..12).map(member).collect(),
         may_idle: true,
         history: (1..ROUND).map(outcome).collect(),
+        levels: Level::energy_and_hp().into_iter().zip(expected).map(level).collect(),
         random_seed: RandomSeed::from(1),
         evidence: Some(evidence()),
+        ..Question::default()
     };
     question.checked().unwrap()
 }
 
+/// The members as they really are.
+pub fn team() -> Vec<Member> {
+    let is = |robot| Member { levels: true_levels(robot, ROUND).map(Some).to_vec(), ..member(robot) };
+    (0..12).map(is).collect()
+}
+
 /// What an estimator thinks of the members of a question.
 pub fn estimates(estimator: &str, question: &Question) -> Vec<Estimate> {
+    estimates_where(estimator, question, &team())
+}
+
+/// The same where the members really are like this.
+pub fn estimates_where(estimator: &str, question: &Question, team: &[Member]) -> Vec<Estimate> {
     let made = policies::standard().estimator(estimator).unwrap_or_else(|error| panic!("{error}"));
-    made.it.estimate(question).unwrap_or_else(|error| panic!("{estimator}: {error}"))
+    made.estimate(question, Some(Truth(team))).unwrap_or_else(|error| panic!("{estimator}: {error}"))
 }
 
 /// The names of all estimators.

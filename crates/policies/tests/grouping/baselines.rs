@@ -26,7 +26,7 @@ proptest! {
         for policy in ["ENG", "HP_DIS"] {
             let level = |id: &u32| {
                 let member = member(&question, *id);
-                if policy == "ENG" { member.energy_level.unwrap() } else { member.hp_level.unwrap() }
+                member.levels[usize::from(policy == "HP_DIS")].unwrap()
             };
             let decision = decide(policy, &question);
             for role in question.role_ids() {
@@ -98,7 +98,7 @@ fn distance_by_brute_force(question: &Question) -> Vec<Vec<u32>> {
 #[test]
 fn of_robots_of_the_same_health_the_one_nearest_to_the_hardest_task_goes_there() {
     let mut members = drawn_team(&[6], 3);
-    members.iter_mut().for_each(|member| member.hp_level = Some(50.0));
+    members.iter_mut().for_each(|member| member.levels[1] = Some(50.0));
     let question = question(members, &[1, 2, 3]);
     let place = question.tasks[2].place.unwrap();
     let distance = |id: &u32| {

@@ -151,8 +151,8 @@ impl<'a> Oracle<'a> {
         match self.options.hard_rule {
             HardRule::IntraGroupTrust => -mean(&distrust),
             HardRule::Capability => group.len() as f64 * mean(&capability),
-            HardRule::MeanEnergy => mean(&|member| member.energy_level.unwrap()),
-            HardRule::MeanHp => mean(&|member| member.hp_level.unwrap()),
+            HardRule::MeanEnergy => mean(&|member| member.levels[0].unwrap()),
+            HardRule::MeanHp => mean(&|member| member.levels[1].unwrap()),
         }
     }
 }

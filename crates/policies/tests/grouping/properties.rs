@@ -120,8 +120,8 @@ fn missing_facts_are_named_with_their_robot() {
         forget(&mut members[2]);
         two_tasks(members)
     };
-    let no_energy = without(|member| member.energy_level = None);
-    let no_hp = without(|member| member.hp_level = None);
+    let no_energy = without(|member| member.levels[0] = None);
+    let no_hp = without(|member| member.levels[1] = None);
     let mut no_place = without(|_| ());
     no_place.tasks[1].place = None;
     let mut no_needs = without(|_| ());

@@ -4,7 +4,7 @@
 use rne_core::NeedVector;
 use teaming::decision::Protocol;
 use teaming::question::hardest_first;
-use teaming::{Account, GroupSizes, Member, Need, Question, Quota, RandomSeed, RoleId, Task};
+use teaming::{Account, GroupSizes, Member, Need, Question, Quota, RoleId, Task};
 
 use crate::rivals::{distrust, spread, total};
 use crate::support::decide;
@@ -113,25 +113,20 @@ fn third_round() -> Question {
             role: RoleId(role),
             home,
             needs: NeedVector::new(vec![hp, v, sen, eng, res, cap, obs]).unwrap(),
-            energy_level: None,
-            hp_level: None,
+            levels: Vec::new(),
         }
     };
     let tasks = [("hard", 2, [15.6, 64.2]), ("easy", 1, [73.4, 51.6])];
     let task = |(name, difficulty, place)| Task { place: Some(place), ..Task::new(name, difficulty) };
     let names = ["hp", "v", "sen", "eng", "res", "cap", "obs"];
     let question = Question {
-        schema_version: teaming::SCHEMA_VERSION,
         round: 3,
         roles: crate::support::ROLES.map(str::to_owned).to_vec(),
         needs: names.map(|name| Need { name: name.to_owned(), weight: 1.0 }).to_vec(),
         quotas: Quota::equal(&[6, 4, 2], &hardest_first(tasks.iter().map(|task| task.1))),
         tasks: tasks.map(task).to_vec(),
         members: (0..).zip(MEMBERS).map(member).collect(),
-        may_idle: false,
-        history: Vec::new(),
-        random_seed: RandomSeed([0; 32]),
-        evidence: None,
+        ..Question::default()
     };
     question.checked().unwrap()
 }

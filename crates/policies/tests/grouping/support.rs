@@ -7,7 +7,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rne_core::NeedVector;
 use teaming::question::hardest_first;
-use teaming::{Decision, Member, Need, Question, Quota, RandomSeed, RoleId, SCHEMA_VERSION, Task};
+use teaming::{Decision, Level, Member, Need, Question, Quota, RandomSeed, RoleId, Task};
 
 pub const ROLES: [&str; 3] = ["Carrier", "Supplier", "Observer"];
 
@@ -36,8 +36,7 @@ pub fn team(counts: [usize; 3], levels: &[(f64, f64)]) -> Vec<Member> {
                 role: RoleId(role),
                 home: [40.0 + 2.0 * id as f64, 15.0],
                 needs: NeedVector::new(needs).unwrap(),
-                energy_level: Some(*energy),
-                hp_level: Some(*hp),
+                levels: vec![Some(*energy), Some(*hp)],
             }
         })
         .collect()
@@ -55,8 +54,7 @@ pub fn drawn_team(counts: &[usize], seed: u64) -> Vec<Member> {
             role: RoleId(role),
             home: [draw(), draw()],
             needs: NeedVector::new((0..5).map(|_| draw()).collect()).unwrap(),
-            energy_level: Some(draw()),
-            hp_level: Some(draw()),
+            levels: vec![Some(draw()), Some(draw())],
         })
         .collect()
 }
@@ -82,17 +80,14 @@ pub fn question(members: Vec<Member>, difficulties: &[u32]) -> Question {
     let counts: Vec<usize> = (0..3).map(count).collect();
     let needs = members.first().map_or(7, |member| member.needs.values().len());
     let question = Question {
-        schema_version: SCHEMA_VERSION,
-        round: 1,
         roles: ROLES.map(str::to_owned).to_vec(),
         needs: (1..=needs).map(|k| Need { name: format!("need {k}"), weight: 1.0 }).collect(),
         tasks: names.zip(places).zip(difficulties).map(task).collect(),
         quotas: Quota::equal(&counts, &hardest_first(difficulties.iter().copied())),
         members,
-        may_idle: false,
-        history: Vec::new(),
+        levels: Level::energy_and_hp(),
         random_seed: RandomSeed::from(5),
-        evidence: None,
+        ..Question::default()
     };
     question.checked().unwrap()
 }

@@ -79,8 +79,8 @@ fn each_hard_rule_sends_the_group_that_it_names() {
         let maximum = |k: usize| members.iter().map(|m| m.needs.values()[k]).fold(0.0, f64::max);
         let capability = |m: &Member| (0..7).map(|k| m.needs.values()[k] / maximum(k)).sum::<f64>();
         let rules: [(HardRule, Level); 3] = [
-            (HardRule::MeanEnergy, &|m| m.energy_level.unwrap()),
-            (HardRule::MeanHp, &|m| m.hp_level.unwrap()),
+            (HardRule::MeanEnergy, &|m| m.levels[0].unwrap()),
+            (HardRule::MeanHp, &|m| m.levels[1].unwrap()),
             (HardRule::Capability, &capability),
         ];
         for (hard_rule, level) in rules {

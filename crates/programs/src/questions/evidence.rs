@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use teaming::{
-    Body, Evidence, Expected, GroupOutcome, Level, LevelNeed, LevelReport, Member, MemberOutcome, Need,
-    NeedId, Question, Rating, RobotRound, RoundOutcome, TaskId,
+    Body, Evidence, Expected, GroupOutcome, Level, LevelId, LevelNeed, LevelReport, Member, MemberOutcome,
+    Need, NeedId, Question, Rating, RobotRound, RoundOutcome, TaskId,
 };
 
 /// Reports of a robot in a round: one every ten seconds of 150.
@@ -28,10 +28,7 @@ pub fn with_evidence(question: Question) -> Question {
     let dealt = |task: usize| ids.iter().skip(task).step_by(tasks).copied().collect();
     let groups: Vec<Vec<u32>> = (0..tasks).map(dealt).collect();
     let mut evidence = Evidence {
-        energy_threshold: 20.0,
-        hp_threshold: 20.0,
         bodies: question.members.iter().map(|member| body(member, &question.needs)).collect(),
-        initial: Some([Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }]),
         ..Evidence::default()
     };
     for round in 1..8 {
@@ -49,16 +46,15 @@ pub fn with_evidence(question: Question) -> Question {
     }
     evidence.reports.extend(question.members.iter().map(|member| report(member, 8, 0, &mut draws)));
     let history = (1..8).map(|round| outcome(round, &groups)).collect();
-    Question { round: 8, history, evidence: Some(evidence), may_idle: true, ..question }
+    let expected = [Expected { mean: 80.0, sd: 20.0 }, Expected { mean: 90.0, sd: 10.0 }];
+    let levels = question.levels.into_iter().zip(expected);
+    let levels = levels.map(|(level, of)| Level { threshold: 20.0, expected: Some(of), ..level }).collect();
+    Question { round: 8, levels, history, evidence: Some(evidence), may_idle: true, ..question }
 }
 
 /// What follows from a level, by the name of the need, and its value at 100 %.
-const OF_LEVELS: [(&str, Level, f64); 4] = [
-    ("hp", Level::Health, 100.0),
-    ("v", Level::Health, 2.0),
-    ("sen", Level::Health, 5.0),
-    ("eng", Level::Energy, 100.0),
-];
+const OF_LEVELS: [(&str, LevelId, f64); 4] =
+    [("hp", LevelId(1), 100.0), ("v", LevelId(1), 2.0), ("sen", LevelId(1), 5.0), ("eng", LevelId(0), 100.0)];
 
 fn body(member: &Member, needs: &[Need]) -> Body {
     let follows = |(need, of): (u16, &Need)| {
@@ -66,14 +62,15 @@ fn body(member: &Member, needs: &[Need]) -> Body {
         Some(LevelNeed { need: NeedId(need), level, at_0: 0.0, at_100 })
     };
     let needs = (0..).zip(needs).filter_map(follows).collect();
-    let guides = member.role.index() == 2;
-    Body { robot: member.id, top_mps: 2.0, floor: 0.5, carries: member.role.index() == 0, guides, needs }
+    let (robot, slowed_by) = (member.id, LevelId(1));
+    let (carries, guides) = (member.role.index() == 0, member.role.index() == 2);
+    Body { robot, top_mps: 2.0, slowed_by, floor: 0.5, carries, guides, needs }
 }
 
 fn report(member: &Member, round: u32, number: u32, draws: &mut ChaCha8Rng) -> LevelReport {
     let sent_s = ROUND_S * f64::from(round) + 10.0 * f64::from(number);
     let spent = 6.0 * ((f64::from(round) - 8.0) + f64::from(number) / f64::from(REPORTS));
-    let [energy, hp] = [member.energy_level, member.hp_level].map(Option::unwrap_or_default);
+    let [energy, hp] = [0, 1].map(|level| member.level(LevelId(level)).unwrap_or_default());
     let noise: f64 = draws.random_range(-2.0..2.0);
     LevelReport {
         of: member.id,
@@ -81,10 +78,9 @@ fn report(member: &Member, round: u32, number: u32, draws: &mut ChaCha8Rng) -> L
         round,
         sent_s,
         heard_s: sent_s,
-        energy_level: (energy - spent + noise).clamp(0.0, 100.0),
-        hp_level: (hp + noise).clamp(0.0, 100.0),
+        levels: [energy - spent + noise, hp + noise].map(|level| level.clamp(0.0, 100.0)).to_vec(),
         needs: BTreeMap::new(),
-        sd: [2.0; 2],
+        sd: vec![2.0; 2],
     }
 }
 

@@ -1,6 +1,6 @@
 //! What a program may write in more than one way.
 
-use teaming::{Evidence, Question, TrueLevels};
+use teaming::Question;
 
 use crate::support::{ask, python, small};
 
@@ -12,7 +12,7 @@ fn groups(question: &Question, body: &str) -> Vec<Vec<u32>> {
 
 #[test]
 fn whole_numbers_may_have_a_point() {
-    let body = "hello(protocol=1.0, schema_version=2.0)\nanswer([[0.0, 1, 3.0], [2.0, 4.0]])";
+    let body = "hello(protocol=1.0, schema_version=3.0)\nanswer([[0.0, 1, 3.0], [2.0, 4.0]])";
     assert_eq!(groups(&small(), body), [vec![0, 1, 3], vec![2, 4]]);
 }
 
@@ -43,7 +43,7 @@ send({'type': 'error', 'id': asked['id'], 'message': 'enough'})";
     let error = ask(&mut *session, 7, &small()).unwrap_err().to_string();
     let (head, told) = error.split_once("\nits standard error ends with:\n  ").unwrap();
     assert_eq!(head, "round 1: it gave up: enough");
-    let expected = "[{\"type\": \"hello\", \"protocol\": 1, \"schema_versions\": [2], \
+    let expected = "[{\"type\": \"hello\", \"protocol\": 1, \"schema_versions\": [3], \
         \"usar\": \"0.1.0\", \"policy\": \"mine\", \
         \"options\": {\"depth\": 3, \"names\": [\"a\"], \"rule\": \"Sum\"}, \"process\": 0}, \
         {\"type\": \"question\", \"id\": 1, \"trial\": {\"seed\": 7, \"scenario\": \"paper\"}, \
@@ -55,20 +55,4 @@ send({'type': 'error', 'id': asked['id'], 'message': 'enough'})";
 fn a_program_may_write_much_to_its_standard_error() {
     let body = "hello()\nfor _ in range(20000): print('x' * 79, file=sys.stderr)\nanswer()";
     assert_eq!(groups(&small(), body).len(), 2);
-}
-
-/// The truth in the evidence is for the control `Truth` only.
-#[test]
-fn a_program_does_not_see_the_truth() {
-    let truth = vec![TrueLevels { robot: 0, energy_level: 12.5, hp_level: 25.0 }];
-    let question = Question { evidence: Some(Evidence { truth, ..Evidence::default() }), ..small() };
-    let folder = tempfile::tempdir().unwrap();
-    let body = "
-hello()
-asked = read()
-seen = asked['question']['evidence'].get('truth')
-send({'type': 'error', 'id': asked['id'], 'message': f'it sees {seen}'})";
-    let mut session = python(folder.path(), body, "").open().unwrap();
-    let error = ask(&mut *session, 1, &question).unwrap_err().to_string();
-    assert!(error.contains("it sees []"), "{error}");
 }

@@ -18,7 +18,7 @@ def send(message):
     print(json.dumps(message), flush=True)
 def hello(**more):
     message = read()
-    send({"type": "hello", "protocol": 1, "schema_version": 2, "name": "test", "version": "1"} | more)
+    send({"type": "hello", "protocol": 1, "schema_version": 3, "name": "test", "version": "1"} | more)
     return message
 def decide(question):
     groups = [[] for _ in question["tasks"]]

@@ -1,11 +1,11 @@
 //! The question to the policy: how the fit robots are to be grouped.
 
-use scenario::EmptyTasks;
-use scenario::seed::{Purpose, stream};
-use teaming::{GroupSizes, Member, Question, Quota, RandomSeed, SCHEMA_VERSION, Task, TaskId};
+use teaming::{GroupSizes, Level, Member, Question, Quota, RandomSeed, Rest, SCHEMA_VERSION, Task, TaskId};
 
 use crate::belief::Belief;
 use crate::model::{Model, NeedModel, TaskModel};
+use crate::scenario::{EmptyTasks, RestFills};
+use crate::seed::{Purpose, stream};
 
 /// The question how these robots are to be grouped.
 pub(super) fn question(model: &Model, round: u32, belief: &Belief, members: Vec<Member>) -> Question {
@@ -24,8 +24,11 @@ pub(super) fn question(model: &Model, round: u32, belief: &Belief, members: Vec<
     Question {
         schema_version: SCHEMA_VERSION,
         round,
+        asker: None,
         roles: model.roles.clone(),
         needs: model.needs.iter().map(need).collect(),
+        levels: levels(model),
+        rest: if model.mission.rest_fills == RestFills::Low { Rest::Low } else { Rest::All },
         quotas: (0..model.roles.len()).map(quota).collect(),
         tasks,
         members,
@@ -34,6 +37,17 @@ pub(super) fn question(model: &Model, round: u32, belief: &Belief, members: Vec<
         random_seed: RandomSeed(stream(model.seed, Purpose::Grouping, u64::from(round)).get_seed()),
         evidence: None,
     }
+}
+
+/// The levels, in the order of [`ENERGY`](crate::robot::ENERGY) and [`HP`](crate::robot::HP).
+fn levels(model: &Model) -> Vec<Level> {
+    let (rules, telemetry) = (&model.mission, model.telemetry.as_ref());
+    let mut levels = Level::energy_and_hp();
+    for (place, (level, low)) in levels.iter_mut().zip([rules.low_energy, rules.low_hp]).enumerate() {
+        level.threshold = low.threshold;
+        level.expected = telemetry.map(|telemetry| telemetry.initial[place]);
+    }
+    levels
 }
 
 /// The tasks, and how many rescuees wait there by this belief.
@@ -67,4 +81,18 @@ fn asked(model: &Model, role: usize, is_open: &[bool]) -> Vec<Option<usize>> {
         }
     }
     asked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_question_that_waits_keeps_in_bytes_who_asks() {
+        let question = |asker| Question { asker, levels: Level::energy_and_hp(), ..Question::default() };
+        for asked in [question(None), question(Some(7))] {
+            let bytes = postcard::to_stdvec(&asked).unwrap();
+            assert_eq!(postcard::from_bytes::<Question>(&bytes).unwrap(), asked);
+        }
+    }
 }

@@ -19,15 +19,14 @@ mod view;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use scenario::{LayoutError, Scenario};
-use teaming::{Asked, AssignmentError, Decision, Member, Question, Session, TrueLevels};
+use teaming::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, Truth};
 use thiserror::Error;
 
 use crate::event::Event;
 use crate::invariant::{Invariants, Overlaps};
 use crate::mission::Ending;
 use crate::record::{DecisionRecord, HeardRecord, RobotRecord, Status, TaskRecord, TrialRecord};
-use crate::robot::Robot;
+use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::world::World;
 
@@ -195,11 +194,15 @@ impl Simulation {
 
     /// The members of the question that waits as they really are; none if the question has them so.
     pub fn truth(&self) -> Option<Vec<Member>> {
-        let (asked, robots) = (&self.question.as_ref()?.members, &self.state.world.robots);
-        let needs = &self.model().needs;
-        let members: Vec<Member> =
-            asked.iter().filter_map(|member| robots[member.id as usize].member(needs)).collect();
-        (members != *asked).then_some(members)
+        let asked = &self.question.as_ref()?.members;
+        Some(self.team()).filter(|team| team != asked)
+    }
+
+    /// The members of the question that waits as they really are, by id.
+    pub fn team(&self) -> Vec<Member> {
+        let (robots, needs) = (&self.state.world.robots, &self.model().needs);
+        let asked = self.question.iter().flat_map(|question| &question.members);
+        asked.filter_map(|member| robots[member.id as usize].member(needs)).collect()
     }
 
     /// Does a whole step, in which a session answers questions. Returns the status once the trial is over.
@@ -221,7 +224,9 @@ impl Simulation {
     /// Lets a session answer the question that waits. Without a usable answer, the trial has failed.
     fn answer(&mut self, session: &mut impl Session) {
         let Some(question) = &self.question else { return };
-        let taken = match session.decide(&Asked { trial: Some(self), ..Asked::of(question) }) {
+        let team = self.team();
+        let asked = Asked { question, deadline, truth: Some(Truth(&team)), trial: Some(self) };
+        let taken = match session.decide(&asked) {
             Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),
         };
@@ -363,17 +368,12 @@ impl Simulation {
 
     /// Takes the mission's question, if it has one, and adds the history of earlier rounds.
     fn take_question(&mut self) {
-        let State { mission, telemetry, beliefs, world, .. } = &self.state;
+        let State { mission, telemetry, beliefs, .. } = &self.state;
         self.question = mission.question().map(|question| {
             let rounds = || beliefs.ledger.rounds().to_vec();
             let history = telemetry.as_ref().map_or_else(rounds, |telemetry| telemetry.history());
-            let is = |member: &Member| {
-                let Robot { energy, hp, .. } = world.robots[member.id as usize];
-                TrueLevels { robot: member.id, energy_level: energy, hp_level: hp }
-            };
-            let truth = || question.members.iter().map(is).collect();
             let model = &self.setup.model;
-            let evidence = telemetry.as_ref().and_then(|telemetry| telemetry.evidence(model, truth()));
+            let evidence = telemetry.as_ref().and_then(|telemetry| telemetry.evidence(model));
             Question { history, evidence, ..question.clone() }
         });
     }

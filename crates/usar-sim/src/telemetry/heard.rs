@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use teaming::evidence::is_named;
-use teaming::{Body, Evidence, Expected, Extent, LevelReport, Rating, RobotRound, RoundOutcome, TrueLevels};
+use teaming::{Evidence, Extent, LevelReport, Rating, RobotRound, RoundOutcome};
 
 use crate::ids::RobotId;
 use crate::model::Model;
@@ -17,8 +17,7 @@ pub struct Heard {
     last: Vec<Option<Said>>,
     /// All reports, ratings and rounds, in the order in which they were heard. What the base knows without
     /// them is in the model.
-    #[serde(with = "Log")]
-    pub evidence: Evidence,
+    pub log: Log,
     /// The rounds that are over, with the costs as they were said.
     pub history: Vec<RoundOutcome>,
     /// How much of the evidence each question had, in their order.
@@ -31,25 +30,62 @@ pub struct Heard {
     spent_at_start: Vec<[f64; 2]>,
 }
 
-/// Evidence as it changes in a trial: without what is fixed, and without the truth.
-#[derive(Serialize, Deserialize)]
-#[serde(remote = "Evidence")]
-struct Log {
+/// Evidence as it changes in a trial, without what is fixed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Log {
+    /// It stays as it is. The hash of a trial has counted it from the start.
     energy_threshold: f64,
-    #[serde(skip)]
-    hp_threshold: f64,
-    #[serde(skip)]
-    rest_fills_one: bool,
-    reports: Vec<LevelReport>,
+    reports: Vec<Report>,
     ratings: Vec<Rating>,
     ledger: Vec<RobotRound>,
+    /// It stays empty, for the same reason.
     known_since: BTreeMap<u32, u32>,
-    #[serde(skip)]
-    bodies: Vec<Body>,
-    #[serde(skip)]
-    initial: Option<[Expected; 2]>,
-    #[serde(skip)]
-    truth: Vec<TrueLevels>,
+}
+
+impl Log {
+    /// How much there is of it in a round, with these robots known since.
+    pub fn extent(&self, round: u32, known_since: BTreeMap<u32, u32>) -> Extent {
+        let Self { reports, ratings, ledger, .. } = self;
+        Extent { round, reports: reports.len(), ratings: ratings.len(), ledger: ledger.len(), known_since }
+    }
+
+    /// All of it, as questions have it.
+    pub fn evidence(&self) -> Evidence {
+        Evidence {
+            reports: self.reports.iter().map(Report::told).collect(),
+            ratings: self.ratings.clone(),
+            ledger: self.ledger.clone(),
+            ..Evidence::default()
+        }
+    }
+}
+
+/// What a robot says of its energy and its HP: a [`LevelReport`] whose lists have the length of these two.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The robot that it is about.
+    pub of: u32,
+    /// The robot that says so.
+    pub by: u32,
+    /// The round in which it was sent.
+    pub round: u32,
+    /// When it was sent, in seconds.
+    pub sent_s: f64,
+    /// When it was heard, in seconds.
+    pub heard_s: f64,
+    /// Energy and HP, in percent.
+    pub levels: [f64; 2],
+    /// See [`LevelReport::needs`].
+    pub needs: BTreeMap<usize, f64>,
+    /// Standard deviations of the gauges of energy and HP, in percent points.
+    pub sd: [f64; 2],
+}
+
+impl Report {
+    fn told(&self) -> LevelReport {
+        let Self { of, by, round, sent_s, heard_s, levels, needs, sd } = self.clone();
+        LevelReport { of, by, round, sent_s, heard_s, levels: levels.to_vec(), needs, sd: sd.to_vec() }
+    }
 }
 
 /// What was said of a robot.
@@ -65,7 +101,13 @@ impl Heard {
     pub(super) fn nothing(robots: usize, energy_threshold: f64) -> Self {
         Self {
             last: vec![None; robots],
-            evidence: Evidence { energy_threshold, ..Evidence::default() },
+            log: Log {
+                energy_threshold,
+                reports: Vec::new(),
+                ratings: Vec::new(),
+                ledger: Vec::new(),
+                known_since: BTreeMap::new(),
+            },
             history: Vec::new(),
             extents: Vec::new(),
             known_since: BTreeMap::new(),
@@ -75,11 +117,10 @@ impl Heard {
     }
 
     /// Hears what was said of a robot. What was sent before the last that was heard is evidence only.
-    pub(super) fn hear_levels(&mut self, report: LevelReport) {
-        let levels = [report.energy_level, report.hp_level];
-        let said = Said { sent_s: report.sent_s, levels, needs: report.needs.clone() };
+    pub(super) fn hear_levels(&mut self, report: Report) {
+        let said = Said { sent_s: report.sent_s, levels: report.levels, needs: report.needs.clone() };
         let of = report.of as usize;
-        self.evidence.reports.push(report);
+        self.log.reports.push(report);
         if let Some(before) = &self.last[of] {
             if said.sent_s < before.sent_s {
                 return;
@@ -92,7 +133,7 @@ impl Heard {
     }
 
     pub(super) fn hear_rating(&mut self, rating: Rating) {
-        self.evidence.ratings.push(rating);
+        self.log.ratings.push(rating);
     }
 
     /// The levels of a robot as they were said last, in percent.
@@ -127,7 +168,7 @@ impl Heard {
                 let [energy, hp] = [0, 1].map(|level| self.spent[id][level] - self.spent_at_start[id][level]);
                 member.energy = unit.of_percent(energy, spec.energy);
                 member.hp = unit.of_percent(hp, spec.hp);
-                self.evidence.ledger.push(RobotRound {
+                self.log.ledger.push(RobotRound {
                     robot: member.id,
                     round: round.round,
                     left_s: time_s - round.duration_s,
@@ -171,23 +212,22 @@ mod tests {
 
     #[test]
     fn what_was_sent_earlier_and_is_heard_later_is_evidence_only() {
-        let report = |sent_s: f64, energy_level: f64| LevelReport {
+        let report = |sent_s: f64, energy: f64| Report {
             of: 0,
             by: 0,
             round: 1,
             sent_s,
             heard_s: sent_s,
-            energy_level,
-            hp_level: 90.0,
+            levels: [energy, 90.0],
             needs: BTreeMap::new(),
             sd: [0.0; 2],
         };
         let mut heard = Heard::nothing(1, 30.0);
-        for (sent_s, energy_level) in [(10.0, 80.0), (30.0, 60.0), (20.0, 70.0)] {
-            heard.hear_levels(report(sent_s, energy_level));
+        for (sent_s, energy) in [(10.0, 80.0), (30.0, 60.0), (20.0, 70.0)] {
+            heard.hear_levels(report(sent_s, energy));
         }
         assert_eq!(heard.levels(RobotId(0), [0.0; 2]).map(f64::to_bits), [60.0, 90.0].map(f64::to_bits));
-        assert_eq!((heard.evidence.reports.len(), heard.spent[0][0].to_bits()), (3, 20.0_f64.to_bits()));
+        assert_eq!((heard.log.reports.len(), heard.spent[0][0].to_bits()), (3, 20.0_f64.to_bits()));
         heard.hear_levels(report(30.0, 50.0)); // under another's name: after the true one
         assert_eq!(heard.levels(RobotId(0), [0.0; 2])[0].to_bits(), 50.0_f64.to_bits());
     }

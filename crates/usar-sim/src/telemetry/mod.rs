@@ -17,19 +17,19 @@ mod witness;
 use rne_core::NeedVector;
 use scenario::{Lie, Measure};
 use serde::{Deserialize, Serialize};
-use teaming::{Evidence, LevelReport, Member, Rating, RoundOutcome, TrueLevels};
+use teaming::{Evidence, Member, Rating, RoundOutcome};
 
 pub use channel::{Channel, Ends, Link};
 pub use heard::Heard;
 pub(crate) use heard::named;
-pub(crate) use known::{known, true_levels};
+pub(crate) use known::known;
 
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::model::{Model, TelemetryModel};
 use crate::robot::Robot;
 use channel::Sending;
-use heard::Trip;
+use heard::{Report, Trip};
 use lie::{Told, said_of_mate};
 use radio::ForMate;
 use witness::Witnesses;
@@ -69,7 +69,7 @@ struct Message {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Says {
-    Levels(LevelReport),
+    Levels(Report),
     Rating(Rating),
 }
 
@@ -174,14 +174,14 @@ impl Telemetry {
 
     /// A question is asked: what it has of the evidence.
     pub(crate) fn note_question(&mut self, round: u32) {
-        let extent = self.heard.evidence.extent(round, self.heard.known_since.clone());
+        let extent = self.heard.log.extent(round, self.heard.known_since.clone());
         self.heard.extents.push(extent);
     }
 
-    /// The evidence of the last question. `truth` has the levels of its members as they really are.
-    pub(crate) fn evidence(&self, model: &Model, truth: Vec<TrueLevels>) -> Option<Evidence> {
+    /// The evidence of the last question.
+    pub(crate) fn evidence(&self, model: &Model) -> Option<Evidence> {
         let extent = self.heard.extents.last()?;
-        Some(Evidence { truth, ..known(model, self.heard.evidence.as_of(extent)) })
+        Some(known(model, self.heard.log.evidence().as_of(extent)))
     }
 
     /// The levels of a robot as they were heard last, in percent.
@@ -311,7 +311,7 @@ impl Telemetry {
                 log.push(Event::Heard { robot: by, to: None, sent_s });
             }
             match says {
-                Says::Levels(report) => self.heard.hear_levels(LevelReport { heard_s, ..report }),
+                Says::Levels(report) => self.heard.hear_levels(Report { heard_s, ..report }),
                 Says::Rating(rating) => self.heard.hear_rating(rating),
             }
         }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use scenario::Lie;
-use teaming::{LevelReport, NeedId};
+use teaming::NeedId;
 
 use super::gauge::{Reading, read};
+use super::heard::Report;
 use super::lie::Topic;
 use super::{Now, Says, Telemetry};
 use crate::event::EventLog;
@@ -44,20 +44,19 @@ impl Telemetry {
         let read = [reading(0, robot.energy), reading(1, robot.hp)];
         self.read[id.index()] = Some(read);
         let (levels, needs) = self.said(robot, read, now);
-        let report = LevelReport {
+        let report = Report {
             of: id.0,
             by: id.0,
             round: now.round,
             sent_s: now.time_s(),
             heard_s: now.time_s(),
-            energy_level: levels[0],
-            hp_level: levels[1],
+            levels,
             needs,
             sd: [gauges[0].sd, gauges[1].sd],
         };
         let other = self.tells(rules, id, now, |lie| matches!(lie, Lie::Impersonate { .. }));
         let false_one = other.and_then(|lie| match lie.lie {
-            Lie::Impersonate { name } => Some(LevelReport { of: name, by: name, ..report.clone() }),
+            Lie::Impersonate { name } => Some(Report { of: name, by: name, ..report.clone() }),
             _ => None,
         });
         for report in [Some(report), false_one].into_iter().flatten() {

@@ -70,7 +70,8 @@ impl Arguments {
         advance_to(&mut trial, &mut *base, self.round, stop)?;
         let question = trial.question().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let start = trial.checkpoint();
-        let question = Asked { question, deadline: stop, trial: Some(&trial) };
+        let team = trial.team();
+        let question = Asked { deadline: stop, trial: Some(&trial), ..Asked::of(question).knowing(&team) };
         let was = base.decide(&question).map_err(Failure::run)?;
         let session = |spec| session_of(spec, &asked.scenario, asked.seed);
         let mut other_session = other.as_ref().map(session).transpose()?;
@@ -226,7 +227,7 @@ mod tests {
     #[test]
     fn groups_are_read_by_the_names_of_tasks() {
         let question = serde_json::json!({
-            "schema_version": 2, "round": 1, "roles": [], "needs": [], "quotas": [], "members": [], "history": [],
+            "schema_version": 3, "round": 1, "roles": [], "needs": [], "quotas": [], "members": [], "history": [],
             "tasks": [{"name": "hard", "difficulty": 2}, {"name": "easy", "difficulty": 1}],
             "random_seed": "00".repeat(32),
         });

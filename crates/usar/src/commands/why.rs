@@ -8,7 +8,7 @@ use experiments::oracle::{Coverage, Evaluation, Objective, Survey};
 use experiments::regret::OutcomeLog;
 use experiments::why::{Directed, OtherChoice, directed, exchanges, other_choices};
 use serde::Serialize;
-use teaming::{Assignment, Decision, Member, Question, assignments};
+use teaming::{Asked, Assignment, Decision, Member, Question, assignments};
 use usar_sim::record::{DecisionRecord, Status};
 use usar_sim::simulation::Simulation;
 
@@ -178,7 +178,11 @@ impl Arguments {
             unit: measure.map(|measure| measure.it.unit().to_owned()),
             between,
             directed: directed.unwrap_or_default(),
-            others: other_choices(&full, &decision.assignment, &others(asked)),
+            others: other_choices(
+                &Asked::of(&full).knowing(record.team()),
+                &decision.assignment,
+                &others(asked),
+            ),
             oracle: self.oracle(asked, question, &decision.assignment)?,
             robot: story.transpose()?,
             decision,

@@ -1,7 +1,7 @@
 //! `usar yang2021 sorting`: compares the groups of a sweep's policies with sorting.
 
 use experiments::metric::task_names;
-use experiments::rounds::{self, GroupLevels, SortingAgreement, agreement, rounds_in};
+use experiments::rounds::{self, GroupLevels, SortingAgreement, agreement, energy, hp, rounds_in};
 use experiments::sweep::folder::Folder;
 use reports::table::{levels_table, likeness_table};
 use scenario::Scenario;
@@ -114,8 +114,7 @@ fn tell_blindness(out: &mut Report, blind: &Blind) {
     let Blind { label, rounds, measure, blindness } = blind;
     let (name, unit) = (&measure.name, measure.it.unit());
     let robot = |robot: &Member| {
-        let level = |level: Option<f64>| level.unwrap_or(0.0);
-        let (energy, hp) = (level(robot.energy_level), level(robot.hp_level));
+        let (energy, hp) = (energy(robot), hp(robot));
         format!("robot {} (energy {energy:.0} %, HP {hp:.0} %)", robot.id)
     };
     if let Some(Example { trial, seed, round, role, unlike, alike, .. }) = &blindness.plainest {

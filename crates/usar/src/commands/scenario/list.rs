@@ -61,8 +61,12 @@ impl Arguments {
         let listed = match (self.of, &self.path) {
             (Of::Scenarios, Some(path)) => scenarios(path)?,
             (Of::Scenarios, None) => carried()?,
-            (Of::Policies, _) => kinds(registry.kinds()),
-            (Of::Estimators, _) => kinds(registry.estimators()),
+            (Of::Policies, _) => {
+                kinds(registry.kinds(), |name| registry.make(name, "").is_ok_and(|made| made.sees_truth()))
+            }
+            (Of::Estimators, _) => kinds(registry.estimators(), |name| {
+                registry.estimator(name).is_ok_and(|made| made.it.needs_truth())
+            }),
             (Of::Roles, _) => roles(&self.scenario()?),
             (Of::Metrics, _) => metrics(&self.scenario()?),
         };
@@ -102,8 +106,11 @@ fn scenarios(folder: &Path) -> Result<Vec<Listed>, Failure> {
     Ok(files.iter().filter_map(one).collect())
 }
 
-fn kinds<T: ?Sized>(kinds: &[Kind<T>]) -> Vec<Listed> {
-    let about = |kind: &Kind<T>| format!("{} {}", kind.about, kind.defaults);
+fn kinds<T: ?Sized>(kinds: &[Kind<T>], sees_truth: impl Fn(&str) -> bool) -> Vec<Listed> {
+    let about = |kind: &Kind<T>| {
+        let truth = if sees_truth(&kind.name) { ", and sees what is true" } else { "" };
+        format!("{}{truth} {}", kind.about, kind.defaults)
+    };
     kinds.iter().map(|kind| Listed { name: kind.name.clone(), about: about(kind) }).collect()
 }
 

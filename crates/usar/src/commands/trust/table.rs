@@ -55,7 +55,10 @@ pub(super) struct TeamTable {
 }
 
 /// Columns other than needs.
-const OTHER_COLUMNS: [&str; 6] = ["id", "role", "x", "y", "energy_level", "hp_level"];
+const OTHER_COLUMNS: [&str; 6] = ["id", "role", "x", "y", LEVELS[0], LEVELS[1]];
+
+/// The columns of [`Level::energy_and_hp`](teaming::Level::energy_and_hp).
+const LEVELS: [&str; 2] = ["energy_level", "hp_level"];
 
 impl TeamTable {
     /// Reads the table.
@@ -147,7 +150,7 @@ impl Rows {
         let mut number = |column: &str, range| self.number(row, column, range);
         let any = f64::MIN..=f64::MAX;
         let home = ["x", "y"].map(|column| number(column, any.clone()).unwrap_or(0.0));
-        let [energy_level, hp_level] = ["energy_level", "hp_level"].map(|column| number(column, 0.0..=100.0));
+        let levels = LEVELS.map(|column| number(column, 0.0..=100.0)).to_vec();
         let values = needs.iter().map(|need| {
             let value = number(&need.name, 0.0..=need.worst.unwrap_or(f64::MAX)).unwrap_or(0.0);
             need.worst.map_or(value, |worst| worst - value)
@@ -158,7 +161,7 @@ impl Rows {
         }
         let needs =
             NeedVector::new(values).map_err(|error| self.problems.push((row.line, error.to_string())));
-        Some(Member { id, role, home, needs: needs.ok()?, energy_level, hp_level })
+        Some(Member { id, role, home, needs: needs.ok()?, levels })
     }
 
     fn text<'t>(&mut self, row: InputRow<'t>, column: &str) -> Option<&'t str> {

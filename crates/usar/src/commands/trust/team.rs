@@ -6,7 +6,7 @@ use experiments::input_table::InputRow;
 use rne_core::NeedWeights;
 use teaming::error::PolicyError;
 use teaming::question::hardest_first;
-use teaming::{Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
+use teaming::{Level, Need, Question, Quota, RandomSeed, Task};
 
 use super::table::{LessIsBetter, NeedColumn, TeamTable};
 use crate::arguments::numbers;
@@ -88,17 +88,14 @@ impl TeamArguments {
         let count = |role: usize| team.members.iter().filter(|member| member.role.index() == role).count();
         let counts: Vec<usize> = (0..team.roles.len()).map(count).collect();
         Ok(Question {
-            schema_version: SCHEMA_VERSION,
-            round: 1,
             roles: team.roles.clone(),
             needs: team.needs.iter().zip(weights).map(need).collect(),
             quotas: Quota::equal(&counts, &hardest_first(tasks.iter().map(|task| task.difficulty))),
             tasks,
             members: team.members.clone(),
-            may_idle: false,
-            history: Vec::new(),
+            levels: Level::energy_and_hp(),
             random_seed: RandomSeed::from(self.draw_seed),
-            evidence: None,
+            ..Question::default()
         })
     }
 

@@ -4,7 +4,8 @@ use experiments::comparison::digits;
 use experiments::why::{Directed, Exchange, OtherChoice};
 use rne_core::RelativeNeedsEntropy;
 use teaming::decision::{Ranking, RneAccount};
-use teaming::{Account as PolicyAccount, Member, Question};
+use teaming::{Account as PolicyAccount, LevelId, Member, Question};
+use usar_sim::robot::{ENERGY, HP};
 
 use super::robot::{RobotStory, in_words};
 use super::{Account, OracleSays};
@@ -75,9 +76,8 @@ fn said_and_true(account: &Account) -> Option<Table> {
         let last = evidence.reports.iter().rev().find(|report| report.of == said.id);
         let age = last.map_or("never".to_owned(), |last| format!("{:.1}", account.time_s - last.sent_s));
         let robot = [said.id.to_string(), account.question.roles[said.role.index()].clone()].map(Some);
-        let energy = [Some(level(said.energy_level)), think(0), Some(level(is.energy_level))];
-        let hp = [Some(level(said.hp_level)), think(1), Some(level(is.hp_level))];
-        robot.into_iter().chain(energy).chain(hp).chain([trust, Some(age)]).flatten().map(right)
+        let told = |of: LevelId| [Some(level(said.level(of))), think(of.index()), Some(level(is.level(of)))];
+        robot.into_iter().chain(told(ENERGY)).chain(told(HP)).chain([trust, Some(age)]).flatten().map(right)
     };
     Some(Table::of(names, account.question.members.iter().zip(account.team).enumerate().map(row)))
 }
