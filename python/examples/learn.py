@@ -48,7 +48,7 @@ class Learned:
         """Groups by rank."""
         members = question["members"]
         needs = numpy.array([member["needs"] for member in members])
-        levels = [[member["energy_level"] / 100, member["hp_level"] / 100] for member in members]
+        levels = numpy.array([member["levels"] for member in members]) / 100
         features = numpy.hstack([levels, needs / numpy.where(needs.max(axis=0) > 0, needs.max(axis=0), 1)])
         # As 32-bit numbers, which environments observe.
         strengths = features.clip(0, 1).astype(numpy.float32) @ self.weights

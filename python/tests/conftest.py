@@ -36,7 +36,7 @@ def eng(question: Any) -> list[list[int]]:
     order = sorted(range(len(groups)), key=lambda task: -question["tasks"][task]["difficulty"])
     for role, quota in enumerate(question["quotas"]):
         members = [member for member in question["members"] if member["role"] == role]
-        members.sort(key=lambda member: (-member["energy_level"], member["id"]))
+        members.sort(key=lambda member: (-member["levels"][0], member["id"]))
         parts = iter(quota["members"] if quota["sizes"] == "Binding" else sorted(quota["members"], reverse=True))
         sizes = quota["members"] if quota["sizes"] == "Binding" else None
         for task in order:
@@ -62,18 +62,19 @@ def random_question(seed: int) -> Any:
                     "role": role,
                     "home": [draws.uniform(0, 9), draws.uniform(0, 9)],
                     "needs": [draws.uniform(0, 9)],
-                    "energy_level": draws.choice([50.0, draws.uniform(0, 100)]),
-                    "hp_level": draws.uniform(0, 100),
+                    "levels": [draws.choice([50.0, draws.uniform(0, 100)]), draws.uniform(0, 100)],
                 }
             )
         split = sorted(draws.randint(0, count) for _ in range(tasks - 1))
         sizes = [upper - lower for lower, upper in zip([0, *split], [*split, count])]
         quotas.append({"members": sizes, "sizes": "Binding"})
     return {
-        "schema_version": 2,
+        "schema_version": 3,
         "round": 1,
         "roles": [f"role {role}" for role in range(roles)],
         "needs": [{"name": "energy", "weight": 1.0}],
+        "levels": [{"name": name, "unit": "%", "threshold": 30.0, "expected": None} for name in ("energy", "hp")],
+        "rest": "All",
         "tasks": [{"name": f"task {task}", "difficulty": draws.randint(1, 3)} for task in range(tasks)],
         "quotas": quotas,
         "members": sorted(members, key=lambda member: member["id"]),

@@ -221,7 +221,7 @@ def test_a_scenario_goes_to_other_processes(short: usar.Scenario) -> None:
 def test_what_decides_runs_trials_again(tmp_path: Path, short: usar.Scenario) -> None:
     def ranked(sign: int) -> Callable[[Any], Any]:
         def mine(question: Any) -> Any:
-            levels = [{**member, "energy_level": sign * member["energy_level"]} for member in question["members"]]
+            levels = [{**member, "levels": [sign * level for level in member["levels"]]} for member in question["members"]]
             return eng({**question, "members": levels})
 
         return mine

@@ -1,23 +1,25 @@
 //! A driver of one's own: its sessions are opened once for a thread and hear of each trial, its kind looks
 //! into the registry that makes it, and what it says of its answers decides whether trials are shared.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use experiments::experiment::{Experiment, Overrides};
+use experiments::provenance::Manifest;
 use experiments::run::Sessions;
 use serde::{Deserialize, Serialize};
 use teaming::{
     Asked, Basis, Decision, Driver, MadePolicy, PolicyError, PolicyKind, Registry, Session, TrialStart,
 };
 
-/// Options: who answers in truth, and whether that is said.
+/// Options: who answers in truth, whether that is said, and whether it declares to need the truth and the trial.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Options {
     of: String,
     is_known: bool,
+    declares: bool,
 }
 
 /// What happened to the sessions.
@@ -25,12 +27,15 @@ struct Options {
 struct Seen {
     opened: AtomicU64,
     seeds: Mutex<Vec<u64>>,
+    /// For each question, whether the truth and the running trial came with it.
+    told: Mutex<Vec<[bool; 2]>>,
 }
 
 /// Answers as another policy does.
 struct Echo {
     of: MadePolicy,
     basis: Basis,
+    declares: bool,
     seen: Arc<Seen>,
 }
 
@@ -42,6 +47,14 @@ impl Driver for Echo {
 
     fn basis(&self) -> Basis {
         self.basis
+    }
+
+    fn needs_truth(&self) -> bool {
+        self.declares
+    }
+
+    fn needs_trial(&self) -> bool {
+        self.declares
     }
 }
 
@@ -57,6 +70,7 @@ impl Session for EchoSession {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        self.seen.told.lock().unwrap().push([asked.truth.is_some(), asked.trial.is_some()]);
         self.of.decide(asked)
     }
 }
@@ -67,7 +81,8 @@ fn registry(seen: &Arc<Seen>) -> Registry {
     let make = move |options: Options, registry: &Registry| {
         let of = registry.parse(&options.of).map_err(|error| format!("of: {error}"))?;
         let basis = if options.is_known { Basis::Question } else { Basis::Undetermined };
-        let echo: Arc<dyn Driver> = Arc::new(Echo { of, basis, seen: Arc::clone(&seen) });
+        let echo: Arc<dyn Driver> =
+            Arc::new(Echo { of, basis, declares: options.declares, seen: Arc::clone(&seen) });
         Ok::<_, String>(echo)
     };
     let mut registry = policies::standard();
@@ -75,15 +90,18 @@ fn registry(seen: &Arc<Seen>) -> Registry {
     registry
 }
 
+fn paper() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap().join("scenarios/paper.ron")
+}
+
+fn overrides(echo: &str) -> Overrides {
+    let policies = Some(vec!["DIS".to_owned(), echo.to_owned()]);
+    let set = vec!["duration_s=60.0".to_owned()];
+    Overrides { policies, trials: Some(2), set, ..Overrides::default() }
+}
+
 fn experiment(echo: &str, seen: &Arc<Seen>) -> Experiment {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
-    let overrides = Overrides {
-        policies: Some(vec!["DIS".to_owned(), echo.to_owned()]),
-        trials: Some(2),
-        set: vec!["duration_s=60.0".to_owned()],
-        ..Overrides::default()
-    };
-    Experiment::load(&root.join("scenarios/paper.ron"), &overrides, &registry(seen)).unwrap()
+    Experiment::load(&paper(), &overrides(echo), &registry(seen)).unwrap()
 }
 
 #[test]
@@ -102,6 +120,36 @@ fn a_session_is_kept_over_trials_and_shares_them_only_if_its_answers_follow_from
         assert_eq!(seen.opened.load(Ordering::Relaxed), 1);
         assert_eq!(*seen.seeds.lock().unwrap(), [experiment.seed(1), experiment.seed(2)]);
     }
+}
+
+#[test]
+fn only_a_driver_that_declares_it_is_told_the_truth_and_gets_the_trial() {
+    for declares in [false, true] {
+        let seen: Arc<Seen> = Arc::default();
+        let experiment = experiment(&format!("ECHO(of: \"DIS\", declares: {declares})"), &seen);
+        let (mut sessions, halt) = (Sessions::default(), AtomicBool::new(false));
+        experiment.run(&experiment.key((0, 1, 1)), &mut sessions, &halt).unwrap();
+        let told = seen.told.lock().unwrap();
+        assert!(!told.is_empty() && told.iter().all(|told| *told == [declares; 2]), "{told:?}");
+        let manifest = Manifest::new(&experiment, None, Vec::new());
+        assert_eq!(manifest.policies_that_see_truth.len(), usize::from(declares));
+    }
+}
+
+/// Behind a driver that does not declare it, the control is not told the truth either.
+#[test]
+fn nobody_passes_the_truth_on_without_having_it() {
+    let asks = |policy: &str| {
+        let overrides = Overrides {
+            set: vec!["duration_s=60.0".to_owned(), "reports=(every_s: 10)".to_owned()],
+            ..overrides(policy)
+        };
+        let experiment = Experiment::load(&paper(), &overrides, &registry(&Arc::default())).unwrap();
+        experiment.run_alone(&experiment.key((0, 1, 1)), &mut Sessions::default(), &AtomicBool::new(false))
+    };
+    let fault = asks("ECHO(of: \"DIS <- Truth\")").unwrap_err();
+    assert!(format!("{fault:?}").contains("here nobody knows them"), "{fault:?}");
+    assert!(asks("DIS <- Truth").is_ok());
 }
 
 #[test]

@@ -9,8 +9,7 @@ const BEFORE_LEVELS: &str = "schema_version must be 3, found 2; since version 3,
 const TEAM: &str = r#"{
   "schema_version": 3, "round": 2,
   "roles": ["carrier", "observer"],
-  "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 0.5}],
-  "levels": [{"name": "energy", "unit": "%"}, {"name": "hp", "unit": "%"}],
+  "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 0.5}], "levels": [{"name": "energy", "unit": "%"}, {"name": "hp", "unit": "%"}],
   "tasks": [
     {"name": "easy", "difficulty": 1, "place": [70.0, 50.0]},
     {"name": "hard", "difficulty": 2, "place": [15.0, 60.0]}],
@@ -106,7 +105,7 @@ fn what_is_no_question_is_refused_with_the_reason() {
             "\"id\": 4, \"colour\": 1, \"role\"",
             not_json(
                 "unknown field `colour`, expected one of `id`, `role`, `home`, `needs`, `levels` \
-                 at line 11 column 22",
+                 at line 10 column 22",
             ),
         ),
         (" \"round\": 2,", "", not_json("missing field `round` at line 19 column 1")),

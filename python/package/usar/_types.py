@@ -13,6 +13,22 @@ class Need(TypedDict):
     weight: float
 
 
+class Expected(TypedDict):
+    """What is expected of a level."""
+
+    mean: float
+    sd: float
+
+
+class Level(TypedDict):
+    """A level that robots have: `energy` or `hp`, in percent."""
+
+    name: str
+    unit: str
+    threshold: float
+    expected: Optional[Expected]
+
+
 class Task(TypedDict):
     """A task that a group is to be formed for."""
 
@@ -40,8 +56,7 @@ class Member(TypedDict):
     role: int
     home: Sequence[float]
     needs: list[float]
-    energy_level: Optional[float]
-    hp_level: Optional[float]
+    levels: list[Optional[float]]
 
 
 class _Question(TypedDict):
@@ -49,6 +64,8 @@ class _Question(TypedDict):
     round: int
     roles: list[str]
     needs: list[Need]
+    levels: list[Level]
+    rest: str
     tasks: list[Task]
     quotas: list[Quota]
     members: list[Member]
@@ -58,8 +75,9 @@ class _Question(TypedDict):
 
 
 class Question(_Question, total=False):
-    """How is the team to be grouped? `evidence` is there in worlds that go by reports."""
+    """How is the team to be grouped? `evidence` is there in worlds that go by reports, `asker` where a robot asks."""
 
+    asker: int
     evidence: dict[str, Any]
 
 

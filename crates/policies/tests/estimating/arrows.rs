@@ -78,6 +78,9 @@ fn robots_that_are_not_believed_stay_at_home() {
     let all = decide("DIS <- Beta | Exclude(below: 1)", &placed(question.clone())).assignment.idle;
     assert_eq!(all.len(), 4, "2 of 6, of each role");
     assert!(all.contains(&BRAGGER) && !all.contains(&11), "the only guide stays in");
+    let by_bragger = Question { asker: Some(BRAGGER), ..question };
+    let idle = decide("HP_DIS <- Cusum | Exclude", &by_bragger).assignment.idle;
+    assert_eq!(idle, [0_u32; 0], "who asks is in its team");
 }
 
 /// The same with places, which DIS needs.

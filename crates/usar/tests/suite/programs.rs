@@ -293,7 +293,7 @@ fn a_command_that_cannot_start_is_bad_input_and_nothing_is_written() {
 fn a_program_that_answers_in_two_ways_is_refused_unless_it_says_so() {
     let folder = place();
     let here = folder.path();
-    write(here, "import random\nfor robot in question['members']: robot['energy_level'] = random.random()");
+    write(here, "import random\nfor robot in question['members']: robot['levels'][0] = random.random()");
     let sweep = [
         "sweep",
         "short.ron",
@@ -323,7 +323,7 @@ fn a_program_that_answers_in_two_ways_is_refused_unless_it_says_so() {
 fn verify_names_the_first_round_that_is_answered_otherwise() {
     let folder = place();
     let here = folder.path();
-    let random = "for robot in question['members']: robot['energy_level'] = random.random()";
+    let random = "for robot in question['members']: robot['levels'][0] = random.random()";
     write(here, &format!("import random\nif question['round'] > 1:\n    {random}"));
     let sweep =
         ["sweep", "short.ron", "--policies", MINE, "--trials", "1", "--set", "duration_s=600", "--quiet"];

@@ -14,7 +14,7 @@ print(*sorted(os.environ), file=open('started', 'a'))
 for line in sys.stdin:
     message = json.loads(line)
     if message['type'] == 'hello':
-        answer = {'type': 'hello', 'protocol': 1, 'schema_version': 2, 'name': 'marker'}
+        answer = {'type': 'hello', 'protocol': 1, 'schema_version': 3, 'name': 'marker'}
     elif message['type'] == 'question':
         groups = [[] for _ in message['question']['tasks']]
         for role, quota in enumerate(message['question']['quotas']):

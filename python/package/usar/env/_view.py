@@ -63,8 +63,10 @@ class View:
         needs = numpy.array([member["needs"] for member in members], numpy.float64)
         largest = needs.max(axis=0)
         rows[ids, 0] = 1.0
-        rows[ids, 1] = [(member["energy_level"] or 0.0) / 100.0 for member in members]
-        rows[ids, 2] = [(member["hp_level"] or 0.0) / 100.0 for member in members]
+        names = [level["name"] for level in question["levels"]]
+        for column, level in enumerate(["energy", "hp"], 1):
+            at = names.index(level)
+            rows[ids, column] = [(member["levels"][at] or 0.0) / 100.0 for member in members]
         rows[ids, 3:5] = numpy.array([member["home"] for member in members]) / self.arena
         rows[ids, [5 + member["role"] for member in members]] = 1.0
         rows[ids, 5 + len(self.roles) :] = needs / numpy.where(largest > 0.0, largest, 1.0)
