@@ -33,7 +33,7 @@ pub struct Question {
     /// Number of the round, from 1.
     pub round: u32,
     /// The robot that asks, one of the members, where robots decide among themselves; absent where the base
-    /// asks. It may be left out of no team that it asks about.
+    /// asks. Nobody leaves it out of its team.
     #[serde(default)]
     pub asker: Option<u32>,
     /// Names of the roles, in the order of their table.
