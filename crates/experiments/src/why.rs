@@ -47,7 +47,8 @@ pub struct Directed {
 /// The choice of each policy. The oracle and policies that cannot group this team are left out.
 pub fn other_choices(asked: &Asked<'_>, chosen: &Assignment, policies: &[PolicySpec]) -> Vec<OtherChoice> {
     let choice = |spec: &PolicySpec| {
-        let (question, assignment) = (asked.question, spec.made().decide(*asked).ok()?.assignment);
+        let (question, assignment) =
+            (asked.question, spec.made().open().ok()?.decide(asked).ok()?.assignment);
         let moved = |id: &u32| assignment.task_of(*id) != chosen.task_of(*id);
         let moved = question.members.iter().map(|member| member.id).filter(moved).collect();
         let refused = assignment.check(question).err().map(|error| error.to_string());

@@ -330,7 +330,6 @@ impl Decision {
         if let Some(name) = names.keys().find(|name| !is_known(name)) {
             return Err(bad(format!("unknown field `{name}`, expected one of `{}`", FIELDS.join("`, `"))));
         }
-        crate::question::check_version(text)?;
         let mut decision: Self = serde_json::from_str(text).map_err(wrong)?;
         let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
         let all = std::iter::once(&mut decision.assignment).chain(others);

@@ -3,6 +3,7 @@
 use rne_core::NeedsError;
 use thiserror::Error;
 
+use crate::levels::Level;
 use crate::schema::{SCHEMA_VERSION, since};
 
 /// A question that cannot be asked.
@@ -98,13 +99,8 @@ pub enum QuestionError {
         source: NeedsError,
     },
     /// A level that cannot be used.
-    #[error("level {level:?}: {reason}")]
-    Level {
-        /// The level.
-        level: String,
-        /// The rule, and what was found.
-        reason: String,
-    },
+    #[error("a level must have the unit \"%\" and finite numbers, found {0:?}")]
+    Level(Level),
     /// The robot that asks is none of the members.
     #[error("asker must be one of the members, found robot {id}")]
     Asker {
@@ -204,12 +200,9 @@ pub enum PolicyError {
         /// Name of the policy.
         policy: String,
     },
-    /// The policy takes what is true, and is asked where nobody tells it.
-    #[error("{policy} takes the levels of robots as they really are; here nobody knows them")]
-    NoTruth {
-        /// Name of the policy or the estimator.
-        policy: String,
-    },
+    /// The policy stands behind the control `Truth`, and is asked where nobody tells it.
+    #[error("Truth takes the levels of robots as they really are; here nobody knows them")]
+    NoTruth,
     /// The policy is one of another program.
     #[error("this program does not have the policy {policy}: its results can be read, but not run again")]
     Absent {

@@ -106,7 +106,7 @@ impl LevelNeed {
 /// What a robot said of its levels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct LevelReport {
+pub struct LevelReport<Levels = Vec<f64>> {
     /// The robot that it is about.
     pub of: u32,
     /// The robot that says so, by its own words.
@@ -118,12 +118,12 @@ pub struct LevelReport {
     /// When it was heard, in seconds.
     pub heard_s: f64,
     /// Its levels, in the order of the table of levels.
-    pub levels: Vec<f64>,
+    pub levels: Levels,
     /// Needs that were said by themselves, by their places in the table; the others follow from the levels.
     #[serde(default)]
     pub needs: BTreeMap<usize, f64>,
     /// Standard deviations of the gauges of the levels, in percent points.
-    pub sd: Vec<f64>,
+    pub sd: Levels,
 }
 
 /// What a robot says of the speed of a group-mate in a round.
@@ -220,6 +220,15 @@ impl Evidence {
     #[must_use]
     pub fn body(&self, robot: u32) -> Option<&Body> {
         place_of(&self.bodies, robot, |body| body.robot).map(|place| &self.bodies[place])
+    }
+}
+
+impl<const N: usize> LevelReport<[f64; N]> {
+    /// The same with lists of any length.
+    #[must_use]
+    pub fn listed(&self) -> LevelReport {
+        let Self { of, by, round, sent_s, heard_s, levels, needs, sd } = self.clone();
+        LevelReport { of, by, round, sent_s, heard_s, levels: levels.to_vec(), needs, sd: sd.to_vec() }
     }
 }
 

@@ -3,7 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::error::QuestionError;
 use crate::ids::LevelId;
 use crate::question::{Member, Question};
 
@@ -65,15 +64,10 @@ impl Level {
         [ENERGY, HP].map(Self::new).to_vec()
     }
 
-    pub(crate) fn check(&self) -> Result<(), QuestionError> {
-        let expected = self.expected.map_or([0.0; 2], |expected| [expected.mean, expected.sd]);
-        let is_number = self.threshold.is_finite() && expected.iter().all(|number| number.is_finite());
-        let reason = match &*self.unit {
-            PERCENT if is_number => return Ok(()),
-            PERCENT => "its threshold and what is expected of it must be finite numbers".to_owned(),
-            found => format!("its unit must be {PERCENT:?}, found {found:?}"),
-        };
-        Err(QuestionError::Level { level: self.name.clone(), reason })
+    /// Whether it is in percent, and its numbers are finite.
+    pub(crate) fn is_usable(&self) -> bool {
+        let Expected { mean, sd } = self.expected.unwrap_or(Expected { mean: 0.0, sd: 0.0 });
+        self.unit == PERCENT && [self.threshold, mean, sd].into_iter().all(f64::is_finite)
     }
 }
 

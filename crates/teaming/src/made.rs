@@ -103,8 +103,8 @@ impl MadePolicy {
     ///
     /// # Errors
     /// The session cannot be opened, or the question cannot be answered.
-    pub fn decide<'a>(&self, asked: impl Into<Asked<'a>>) -> Result<Decision, PolicyError> {
-        self.open()?.decide(&asked.into())
+    pub fn decide(&self, question: &Question) -> Result<Decision, PolicyError> {
+        self.open()?.decide(&Asked::of(question))
     }
 
     /// Whether it gets to see what is true: by the truth that it is told, or by the trial that it plays on.

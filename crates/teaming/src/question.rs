@@ -103,23 +103,16 @@ impl Serialize for Question {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let is_text = serializer.is_human_readable();
         let mut fields = serializer.serialize_struct("Question", 14)?;
-        fields.serialize_field("schema_version", &self.schema_version)?;
-        fields.serialize_field("round", &self.round)?;
-        if !is_text || self.asker.is_some() {
-            fields.serialize_field("asker", &self.asker)?;
+        macro_rules! write {
+            ($($field:ident)+) => { $(fields.serialize_field(stringify!($field), &self.$field)?;)+ };
         }
-        fields.serialize_field("roles", &self.roles)?;
-        fields.serialize_field("needs", &self.needs)?;
-        fields.serialize_field("levels", &self.levels)?;
-        fields.serialize_field("rest", &self.rest)?;
-        fields.serialize_field("tasks", &self.tasks)?;
-        fields.serialize_field("quotas", &self.quotas)?;
-        fields.serialize_field("members", &self.members)?;
-        fields.serialize_field("may_idle", &self.may_idle)?;
-        fields.serialize_field("history", &self.history)?;
-        fields.serialize_field("random_seed", &self.random_seed)?;
-        if let Some(evidence) = self.evidence.as_ref().filter(|_| is_text) {
-            fields.serialize_field("evidence", evidence)?;
+        write!(schema_version round);
+        if !is_text || self.asker.is_some() {
+            write!(asker);
+        }
+        write!(roles needs levels rest tasks quotas members may_idle history random_seed);
+        if is_text && self.evidence.is_some() {
+            write!(evidence);
         }
         fields.end()
     }
@@ -284,7 +277,9 @@ impl Question {
         if let Some(need) = self.needs.iter().find(|need| !need.weight.is_finite() || need.weight < 0.0) {
             return Err(QuestionError::Weight { need: need.name.clone(), found: need.weight });
         }
-        self.levels.iter().try_for_each(Level::check)?;
+        if let Some(level) = self.levels.iter().find(|level| !level.is_usable()) {
+            return Err(QuestionError::Level(level.clone()));
+        }
         let mut ids = BTreeSet::new();
         for member in &self.members {
             if !ids.insert(member.id) {
@@ -358,7 +353,6 @@ impl Question {
     /// # Errors
     /// Text that is not the JSON of a question, or a question that [`Question::checked`] refuses.
     pub fn from_json(text: &str) -> Result<Self, QuestionError> {
-        check_version(text)?;
         let question: Self = serde_json::from_str(text).map_err(|error| QuestionError::Json {
             what: "question",
             reason: ron_tree::without_types(&error),
@@ -397,20 +391,6 @@ impl Question {
     #[must_use]
     pub fn draws(&self) -> ChaCha8Rng {
         ChaCha8Rng::from_seed(self.random_seed.0)
-    }
-}
-
-/// Checks the version of a text before its fields, which differ between versions.
-pub(crate) fn check_version(text: &str) -> Result<(), QuestionError> {
-    #[derive(Deserialize)]
-    struct Versioned {
-        schema_version: u32,
-    }
-    match serde_json::from_str(text) {
-        Ok(Versioned { schema_version: found }) if found != SCHEMA_VERSION => {
-            Err(QuestionError::Version { found })
-        }
-        _ => Ok(()),
     }
 }
 

@@ -91,6 +91,12 @@ impl<'e> SaidRounds<'e> {
         Some(row * self.rounds.len() + column)
     }
 
+    /// The place of the battery in lists of levels, and its threshold.
+    #[must_use]
+    pub fn energy(&self) -> Option<(usize, f64)> {
+        self.energy
+    }
+
     /// What the base saw of a robot in a round.
     #[must_use]
     pub fn entry(&self, robot: u32, round: u32) -> Option<&'e RobotRound> {

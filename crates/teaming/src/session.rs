@@ -155,12 +155,6 @@ impl<'a> Asked<'a> {
     }
 }
 
-impl<'a> From<&'a Question> for Asked<'a> {
-    fn from(question: &'a Question) -> Self {
-        Self::of(question)
-    }
-}
-
 /// The moment after which an answer is not wanted any more. Whoever measures the time raises a flag then; a
 /// session that takes long looks at it and gives up with [`PolicyError::Late`].
 #[derive(Debug, Clone, Copy)]

@@ -161,7 +161,7 @@ pub fn analyse(folder: &StudyFolder, criteria: &Criteria, registry: &Registry) -
         for decision in &trial.decisions {
             let survey = decision.survey();
             let choice = |spec: &PolicySpec| {
-                spec.made().decide(Asked::of(&decision.question).knowing(decision.team())).ok()
+                spec.made().open().ok()?.decide(&Asked::of(&decision.question).knowing(decision.team())).ok()
             };
             let choices: Vec<Option<Assignment>> =
                 specs.iter().map(|spec| Some(choice(spec)?.assignment)).collect();

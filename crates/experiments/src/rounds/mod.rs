@@ -62,7 +62,8 @@ impl Round {
     /// # Errors
     /// The policy cannot group this team.
     pub fn grouped_by(&self, policy: &MadePolicy) -> Result<Assignment, Failure> {
-        Ok(policy.decide(Asked::of(&self.question).knowing(&self.team)).map_err(Failure::run)?.assignment)
+        let asked = Asked::of(&self.question).knowing(&self.team);
+        Ok(policy.open().and_then(|mut it| it.decide(&asked)).map_err(Failure::run)?.assignment)
     }
 
     /// The question as it would have been if all members had been reported as they were.

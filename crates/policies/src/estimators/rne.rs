@@ -14,7 +14,6 @@
 
 use rne_core::{NeedDistribution, NeedVector, NeedWeights, relative_entropy};
 use teaming::evidence::DOUBTED_POINTS;
-use teaming::levels::ENERGY;
 use teaming::{
     Body, Estimate, Estimator, EstimatorKind, Evidence, Member, PolicyError, Question, SaidRounds, Used,
 };
@@ -101,17 +100,13 @@ fn distrust(member: &Member, body: &Body, weights: &NeedWeights, look: &Look) ->
 /// members.
 fn looks(question: &Question, evidence: &Evidence) -> Vec<(usize, Look)> {
     let said = SaidRounds::new(question, evidence);
-    let energy_at = question.level(ENERGY);
     let seen = measured_hp(question, evidence);
     let mut looks = Vec::new();
     for round in &question.history {
         for used in said.used(round) {
             let Some(member) = member_of(question, used.robot) else { continue };
             let Some(begun) = said.first(used.robot, round.round) else { continue };
-            let energy = energy_at.and_then(|at| {
-                let threshold = question.levels[at.index()].threshold;
-                Some((at, energy_look(&said, &used, round.round, (at.index(), threshold))?))
-            });
+            let energy = energy_look(&said, &used, round.round);
             let found = seen[member].binary_search_by_key(&round.round, |(round, _)| *round);
             let slowing = evidence.body(used.robot).map(|body| body.slowed_by);
             let slowing = slowing.zip(found.ok().map(|place| seen[member][place].1));
@@ -120,7 +115,7 @@ fn looks(question: &Question, evidence: &Evidence) -> Vec<(usize, Look)> {
             }
             let mut look = Look { said: begun.to_vec(), measured: begun.to_vec() };
             if let Some((at, [said, measured])) = energy {
-                (look.said[at.index()], look.measured[at.index()]) = (said, measured);
+                (look.said[at], look.measured[at]) = (said, measured);
             }
             if let Some((at, measured)) = slowing {
                 look.measured[at.index()] = measured;
@@ -131,23 +126,19 @@ fn looks(question: &Question, evidence: &Evidence) -> Vec<(usize, Look)> {
     looks
 }
 
-/// The energy that a robot said to have after a round, and that it should have, in percent.
-fn energy_look(
-    said: &SaidRounds<'_>,
-    used: &Used,
-    round: u32,
-    (energy, threshold): (usize, f64),
-) -> Option<[f64; 2]> {
+/// The place of energy in lists of levels, with what a robot said to have after a round and what it should have.
+fn energy_look(said: &SaidRounds<'_>, used: &Used, round: u32) -> Option<(usize, [f64; 2])> {
+    let (energy, threshold) = said.energy()?;
     let entry = said.entry(used.robot, round)?;
     let expected = said.first(used.robot, round)?[energy] - used.points.as_ref()?[energy];
     if entry.turned_back || entry.lost {
         let was_far = expected > threshold + DOUBTED_POINTS;
-        return was_far.then_some([expected, threshold]);
+        return was_far.then_some((energy, [expected, threshold]));
     }
     if entry.rested {
         return None;
     }
-    Some([said.first(used.robot, round + 1)?[energy], expected.max(0.0)])
+    Some((energy, [said.first(used.robot, round + 1)?[energy], expected.max(0.0)]))
 }
 
 /// For each member, the medians of the health that its mates measured in percent, by round.

@@ -10,7 +10,9 @@ fn made(text: &str) -> MadePolicy {
 
 fn decide(text: &str, question: &Question) -> Decision {
     let decision = made(text)
-        .decide(Asked::of(question).knowing(&team()))
+        .open()
+        .unwrap()
+        .decide(&Asked::of(question).knowing(&team()))
         .unwrap_or_else(|error| panic!("{text}: {error}"));
     decision.assignment.check(question).unwrap_or_else(|error| panic!("{text}: {error}"));
     decision

@@ -41,13 +41,12 @@ pub(super) fn question(model: &Model, round: u32, belief: &Belief, members: Vec<
 
 /// The levels, in the order of [`ENERGY`](crate::robot::ENERGY) and [`HP`](crate::robot::HP).
 fn levels(model: &Model) -> Vec<Level> {
-    let (rules, telemetry) = (&model.mission, model.telemetry.as_ref());
-    let mut levels = Level::energy_and_hp();
-    for (place, (level, low)) in levels.iter_mut().zip([rules.low_energy, rules.low_hp]).enumerate() {
-        level.threshold = low.threshold;
-        level.expected = telemetry.map(|telemetry| telemetry.initial[place]);
-    }
-    levels
+    let low = [model.mission.low_energy, model.mission.low_hp];
+    let level = |(at, level): (usize, Level)| {
+        let expected = model.telemetry.as_ref().map(|telemetry| telemetry.initial[at]);
+        Level { threshold: low[at].threshold, expected, ..level }
+    };
+    Level::energy_and_hp().into_iter().enumerate().map(level).collect()
 }
 
 /// The tasks, and how many rescuees wait there by this belief.

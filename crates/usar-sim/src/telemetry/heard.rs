@@ -31,7 +31,7 @@ pub struct Heard {
 }
 
 /// Evidence as it changes in a trial, without what is fixed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Log {
     /// It stays as it is. The hash of a trial has counted it from the start.
     energy_threshold: f64,
@@ -52,7 +52,7 @@ impl Log {
     /// All of it, as questions have it.
     pub fn evidence(&self) -> Evidence {
         Evidence {
-            reports: self.reports.iter().map(Report::told).collect(),
+            reports: self.reports.iter().map(Report::listed).collect(),
             ratings: self.ratings.clone(),
             ledger: self.ledger.clone(),
             ..Evidence::default()
@@ -60,33 +60,8 @@ impl Log {
     }
 }
 
-/// What a robot says of its energy and its HP: a [`LevelReport`] whose lists have the length of these two.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Report {
-    /// The robot that it is about.
-    pub of: u32,
-    /// The robot that says so.
-    pub by: u32,
-    /// The round in which it was sent.
-    pub round: u32,
-    /// When it was sent, in seconds.
-    pub sent_s: f64,
-    /// When it was heard, in seconds.
-    pub heard_s: f64,
-    /// Energy and HP, in percent.
-    pub levels: [f64; 2],
-    /// See [`LevelReport::needs`].
-    pub needs: BTreeMap<usize, f64>,
-    /// Standard deviations of the gauges of energy and HP, in percent points.
-    pub sd: [f64; 2],
-}
-
-impl Report {
-    fn told(&self) -> LevelReport {
-        let Self { of, by, round, sent_s, heard_s, levels, needs, sd } = self.clone();
-        LevelReport { of, by, round, sent_s, heard_s, levels: levels.to_vec(), needs, sd: sd.to_vec() }
-    }
-}
+/// What a robot says of its energy and its HP, as it lies in the state of a trial.
+pub type Report = LevelReport<[f64; 2]>;
 
 /// What was said of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -101,13 +76,7 @@ impl Heard {
     pub(super) fn nothing(robots: usize, energy_threshold: f64) -> Self {
         Self {
             last: vec![None; robots],
-            log: Log {
-                energy_threshold,
-                reports: Vec::new(),
-                ratings: Vec::new(),
-                ledger: Vec::new(),
-                known_since: BTreeMap::new(),
-            },
+            log: Log { energy_threshold, ..Log::default() },
             history: Vec::new(),
             extents: Vec::new(),
             known_since: BTreeMap::new(),

@@ -102,7 +102,7 @@ impl Arguments {
         advance_to(&mut simulation, &mut *trial.session()?, self.round, Deadline::when(&STOP))?;
         let question =
             simulation.question().cloned().ok_or_else(|| Failure::run("the trial asks nothing"))?;
-        let choices = self.choices(&trial, teaming::Asked::of(&question).knowing(&simulation.team()))?;
+        let choices = self.choices(&trial, &teaming::Asked::of(&question).knowing(&simulation.team()))?;
         let asked = Asked { trial: &trial, question, time_s: simulation.time_s(), objective, choices };
         let key = decision_key(&trial, self.round, &onwards)?;
         let mut log = OutcomeLog::open(&self.cache, &key)?;
@@ -123,7 +123,7 @@ impl Arguments {
     fn choices(
         &self,
         trial: &Trial,
-        asked: teaming::Asked<'_>,
+        asked: &teaming::Asked<'_>,
     ) -> Result<Vec<(String, Assignment)>, Failure> {
         let parse = |text: &str| parse_policy("--policies", text, &trial.registry);
         let specs = match self.policies.list() {
@@ -134,7 +134,7 @@ impl Arguments {
         };
         let is_policy = |spec: &&PolicySpec| spec.is_of_question();
         let choice = |spec: &PolicySpec| {
-            let decision = spec.made().decide(asked);
+            let decision = spec.made().open().and_then(|mut session| session.decide(asked));
             let decision =
                 decision.map_err(|error| Failure::input(format!("policy {}: {error}", spec.label)))?;
             Ok((spec.label.clone(), decision.assignment))
