@@ -9,7 +9,6 @@ use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
 use usar_sim::navigation::Goal;
 use usar_sim::robot::ENERGY;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Simulation};
 use usar_sim::world::RescueeState;
 

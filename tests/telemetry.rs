@@ -5,11 +5,11 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;
+use scenario::Scenario;
 use teaming::{Asked, Assignment, Question, Truth};
 use usar_sim::hash::PARTS;
 use usar_sim::record::TrialRecord;
 use usar_sim::robot::HP;
-use usar_sim::scenario::Scenario;
 use usar_sim::simulation::{Advance, Simulation};
 
 use crate::support::{paper_with, policy};

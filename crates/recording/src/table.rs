@@ -8,7 +8,6 @@ use tables::{About, Cell, Column, Columns, Csv, Kind, abouts, columns};
 use teaming::{Member, Question, TaskId};
 use usar_sim::conflict::DelayCause;
 use usar_sim::robot::{ENERGY, HP};
-use usar_sim::scenario::{Measure, NeedFile};
 
 use crate::error::ReadError;
 use crate::frame::{ACTIVITIES, CONDITIONS, Frame, GroupFrame, RescueeFrame, RobotFrame};

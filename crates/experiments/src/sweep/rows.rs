@@ -11,7 +11,6 @@ use usar_sim::hash::Link;
 use usar_sim::metrics::RoundRecord;
 use usar_sim::record::{LinkRecord, RobotRecord, TrialRecord};
 use usar_sim::robot::{ENERGY, HP};
-use usar_sim::scenario::NeedFile;
 
 use super::line::Finished;
 use super::summary::Summary;

@@ -4,8 +4,8 @@ use teaming::{GroupSizes, Level, Member, Question, Quota, RandomSeed, Rest, SCHE
 
 use crate::belief::Belief;
 use crate::model::{Model, NeedModel, TaskModel};
-use crate::scenario::{EmptyTasks, RestFills};
-use crate::seed::{Purpose, stream};
+use scenario::seed::{Purpose, stream};
+use scenario::{EmptyTasks, RestFills};
 
 /// The question how these robots are to be grouped.
 pub(super) fn question(model: &Model, round: u32, belief: &Belief, members: Vec<Member>) -> Question {

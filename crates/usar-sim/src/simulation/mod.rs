@@ -19,16 +19,16 @@ mod view;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use teaming::{Asked, AssignmentError, Deadline, Decision, Member, Question, Session, Truth};
+use teaming::{Asked, AssignmentError, Decision, Member, Question, Session, Truth};
 use thiserror::Error;
 
 use crate::event::Event;
 use crate::invariant::{Invariants, Overlaps};
 use crate::mission::Ending;
 use crate::record::{DecisionRecord, HeardRecord, RobotRecord, Status, TaskRecord, TrialRecord};
-use crate::scenario::{LayoutError, Scenario};
 use crate::stage::Stage;
 use crate::world::World;
+use scenario::{LayoutError, Scenario};
 
 pub use checkpoint::Checkpoint;
 pub use in_time::InTime;
@@ -225,7 +225,7 @@ impl Simulation {
     fn answer(&mut self, session: &mut impl Session) {
         let Some(question) = &self.question else { return };
         let team = self.team();
-        let asked = Asked { question, deadline, truth: Some(Truth(&team)), trial: Some(self) };
+        let asked = Asked { truth: Some(Truth(&team)), trial: Some(self), ..Asked::of(question) };
         let taken = match session.decide(&asked) {
             Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use scenario::Lie;
 use teaming::NeedId;
 
 use super::gauge::{Reading, read};
