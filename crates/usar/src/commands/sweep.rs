@@ -179,10 +179,11 @@ pub(crate) fn told(folder: &Folder) -> Report {
     let experiment = folder.experiment();
     for (i, case) in experiment.cases.iter().enumerate().take(MAX_TABLES) {
         let place = experiment.describe(case);
+        let place = place.trim_end_matches(": ");
         if !place.is_empty() {
-            out.say(place.trim_end_matches(": "));
+            out.say(place);
         }
-        out.show("policies", policy_table(folder, i));
+        out.show(if place.is_empty() { "policies" } else { place }, policy_table(folder, i));
     }
     if experiment.cases.len() > MAX_TABLES {
         let more = experiment.cases.len() - MAX_TABLES;

@@ -49,14 +49,14 @@ fn the_oracles_best_and_worst_assignments_come_out_of_a_fork() {
             assert_eq!(Value::from(rescued.to_vec()), ranked["rescued"], "round {round}, {assign}");
         }
         let values: Vec<f64> =
-            ranking.iter().map(|ranked| ranked["energy_per_rescuee"].as_f64().unwrap()).collect();
+            ranking.iter().map(|ranked| ranked["energy_per_rescuee.total"].as_f64().unwrap()).collect();
         assert!(values.is_sorted(), "a cost: less is better: {values:?}");
         let policies = found["tables"]["policies"].as_array().unwrap();
         let rne = policies.iter().find(|choice| choice["policy"] == "RNE").unwrap();
-        let regret = rne["energy_per_rescuee"].as_f64().unwrap() - values[0];
+        let regret = rne["energy_per_rescuee.total"].as_f64().unwrap() - values[0];
         assert!((rne["regret"].as_f64().unwrap() - regret).abs() < 1e-12);
         let better =
-            values.iter().filter(|value| **value < rne["energy_per_rescuee"].as_f64().unwrap()).count();
+            values.iter().filter(|value| **value < rne["energy_per_rescuee.total"].as_f64().unwrap()).count();
         assert_eq!(rne["rank"], better + 1);
     }
 }

@@ -70,7 +70,7 @@ impl<'t> Matrix<'t> {
         }
         out.say(format!("needs: {}", self.team.needs()));
         if shown_as() == Format::Json {
-            out.show("trust", self.table(|distrust| right(self.measure.it.trust(distrust))));
+            out.show("trust", self.table(|distrust| valued(self.measure.it.trust(distrust), "")));
             let needs = self.team.question.needs.iter().zip(&self.weights);
             let needs: Vec<_> =
                 needs.map(|(need, used)| json!({"need": need.name, "weight": used})).collect();
