@@ -8,7 +8,7 @@ use crate::error::PolicyError;
 use crate::evidence::{Body, Evidence};
 use crate::levels::Level;
 use crate::question::{Member, Question};
-use crate::session::Truth;
+use crate::truth::Truth;
 use rne_core::needs::NeedVector;
 
 /// A way to judge the evidence of a question.

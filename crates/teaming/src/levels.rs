@@ -3,9 +3,6 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::ids::LevelId;
-use crate::question::{Member, Question};
-
 /// The level of the battery. Estimators compare what group-mates spent of it.
 pub const ENERGY: &str = "energy";
 
@@ -68,28 +65,5 @@ impl Level {
     pub(crate) fn is_usable(&self) -> bool {
         let Expected { mean, sd } = self.expected.unwrap_or(Expected { mean: 0.0, sd: 0.0 });
         self.unit == PERCENT && [self.threshold, mean, sd].into_iter().all(f64::is_finite)
-    }
-}
-
-impl Question {
-    /// The level of this name, if robots have it.
-    #[must_use]
-    pub fn level(&self, name: &str) -> Option<LevelId> {
-        let place = self.levels.iter().position(|level| level.name == name)?;
-        u16::try_from(place).ok().map(LevelId)
-    }
-
-    /// The level of this name of a member, if it is known.
-    #[must_use]
-    pub fn level_of(&self, member: &Member, name: &str) -> Option<f64> {
-        member.level(self.level(name)?)
-    }
-}
-
-impl Member {
-    /// A level, if it is known.
-    #[must_use]
-    pub fn level(&self, level: LevelId) -> Option<f64> {
-        *self.levels.get(level.index())?
     }
 }

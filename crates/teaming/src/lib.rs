@@ -27,6 +27,7 @@ pub mod said;
 pub mod schema;
 pub mod session;
 pub mod trust_use;
+pub mod truth;
 
 pub use decision::{Account, Alternative, Assignment, Decision};
 pub use error::{AssignmentError, PolicyError, QuestionError};
@@ -42,5 +43,6 @@ pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA
 pub use registry::{EstimatorKind, Kind, Makes, MeasureKind, PolicyKind, Registry};
 pub use registry_error::RegistryError;
 pub use said::{EnergyOutcome, SaidRounds, Used};
-pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart, Truth};
+pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};
 pub use trust_use::TrustUse;
+pub use truth::Truth;

@@ -8,7 +8,8 @@ use crate::error::PolicyError;
 use crate::estimate::{Estimate, Estimator};
 use crate::measure::TrustMeasure;
 use crate::question::Question;
-use crate::session::{Asked, Declared, Driver, Session, Truth};
+use crate::session::{Asked, Declared, Driver, Session};
+use crate::truth::Truth;
 
 /// A policy as it was requested.
 pub type MadePolicy = Made<dyn Driver>;

@@ -19,7 +19,7 @@ pub use crate::schema::{MAX_TASKS, SCHEMA_VERSION};
 use crate::error::QuestionError;
 use crate::evidence::Evidence;
 use crate::history::RoundOutcome;
-use crate::ids::{RoleId, TaskId, rows};
+use crate::ids::{LevelId, RoleId, TaskId, rows};
 use crate::levels::{Level, Rest};
 use rne_core::needs::{NeedVector, check_length};
 
@@ -63,6 +63,29 @@ pub struct Question {
     /// everybody knows how every robot is. The state of a trial has it elsewhere, so that it is in texts only.
     #[serde(default, deserialize_with = "evidence_of_text")]
     pub evidence: Option<Evidence>,
+}
+
+impl Question {
+    /// The level of this name, if robots have it.
+    #[must_use]
+    pub fn level(&self, name: &str) -> Option<LevelId> {
+        let place = self.levels.iter().position(|level| level.name == name)?;
+        u16::try_from(place).ok().map(LevelId)
+    }
+
+    /// The level of this name of a member, if it is known.
+    #[must_use]
+    pub fn level_of(&self, member: &Member, name: &str) -> Option<f64> {
+        member.level(self.level(name)?)
+    }
+}
+
+impl Member {
+    /// A level, if it is known.
+    #[must_use]
+    pub fn level(&self, level: LevelId) -> Option<f64> {
+        *self.levels.get(level.index())?
+    }
 }
 
 /// Reads the version, which stands before what differs between versions.

@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::decision::Decision;
 use crate::error::PolicyError;
-use crate::ids::place_of;
 use crate::policy::Policy;
 use crate::question::{Member, Question};
+use crate::truth::Truth;
 
 /// Something that answers questions, before it is asked any.
 pub trait Driver: Send + Sync {
@@ -127,18 +127,6 @@ pub struct Asked<'a> {
     pub truth: Option<Truth<'a>>,
     /// The running trial, for drivers that [need it](Driver::needs_trial), to play it on. Nobody else gets it.
     pub trial: Option<&'a dyn Any>,
-}
-
-/// The members of a question as they really are, by id.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Truth<'a>(pub &'a [Member]);
-
-impl<'a> Truth<'a> {
-    /// A robot as it really is.
-    #[must_use]
-    pub fn of(self, robot: u32) -> Option<&'a Member> {
-        place_of(self.0, robot, |member| member.id).map(|place| &self.0[place])
-    }
 }
 
 impl<'a> Asked<'a> {
