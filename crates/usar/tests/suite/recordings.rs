@@ -122,7 +122,7 @@ fn files_that_cannot_be_shown_are_refused_in_one_sentence() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(output.status.code() == Some(2) && said.contains(reason), "{reason}: {said}");
     };
-    succeeds(&usar(folder.path(), &["run", &scenario(), "--record", "whole.usrec", "--quiet"]));
+    succeeds(&usar(folder.path(), "run paper --set duration_s=60 --record whole.usrec --quiet"));
     let whole = std::fs::read(folder.path().join("whole.usrec")).unwrap();
     let middle = whole.len() / 2;
     refuses(&whole[..100], "a.usrec: ends within its header");
