@@ -92,7 +92,7 @@ fn a_scenario_needs_tasks_or_errands_and_errands_need_robots_and_places() {
     assert!(errors.contains("errands[0].to[0] must lie in the arena"), "{errors}");
     assert!(errors.contains("errands[1].robot must be the id of one of the 1 robots, found 7"), "{errors}");
     assert!(errors.contains("errands[2].robot must not stand twice"), "{errors}");
-    assert!(errors.contains("errands[2].to must name at least one place"), "{errors}");
+    assert!(errors.contains("errands[2].to must have 1 to 10000 entries, found 0"), "{errors}");
 }
 
 #[test]
@@ -347,7 +347,7 @@ fn tables_of_tasks_roles_and_needs_are_checked_and_named_by_their_entries() {
     refused(
         "size_m: (11.0, 5.7), grid: (20, 10)",
         "size_m: (11.0, 5.7), grid: (1001, 10)",
-        "tasks.hard.grid[0] must be a count from 0 to 1000, found 1001",
+        "tasks.hard.grid[0] must be a number from 0 to 1000, found 1001",
     );
     refused(
         "rest: (27.0, 14.5)",

@@ -13,6 +13,7 @@
 //!
 //! ```no_run
 //! use recording::{Options, Recording, record};
+//! use scenario::Scenario;
 //! use usar_sim::simulation::Simulation;
 //!
 //! let (scenario, _text) = Scenario::load("scenarios/paper.ron".as_ref())?;

@@ -122,7 +122,8 @@ fn wall(check: &mut Checker, field: &str, wall: &WallFile) {
 }
 
 fn polygon(check: &mut Checker, field: &str, corners: &[Point]) {
-    if !corners.iter().flatten().all(|x| limits::CORNER_M.range().contains(x)) {
+    let is_sound = limits::CORNERS.allows(corners.len());
+    if !is_sound || !corners.iter().flatten().all(|x| limits::CORNER_M.range().contains(x)) {
         return;
     }
     let edges = || (0..corners.len()).map(|i| [corners[i], corners[(i + 1) % corners.len()]]);

@@ -28,7 +28,7 @@ impl Entry {
         match &self.value {
             Some(value) => value.clone(),
             None if self.text == "-" => Value::Null,
-            None => number().map_or_else(|| self.text.as_str().into(), Value::Number),
+            None => number().map_or_else(|| self.text.trim().into(), Value::Number),
         }
     }
 }

@@ -74,7 +74,7 @@ fn tables_with_too_many_entries_are_refused_at_once() {
     at_once(here, &scenario(&format!("roles: [{roles}]")), "roles must have 1 to 64 entries, found 90000");
     let quota = entries(150_000, "\"r#\": 1");
     let task = TASK.replace("))]", &format!("), quota: {{{quota}}})]"));
-    at_once(here, &format!("{START}{TEAM}{task})"), "tasks[0].quota must have at most 64 entries");
+    at_once(here, &format!("{START}{TEAM}{task})"), "tasks.t.quota must have at most 64 entries");
     let wide = START.replace("1000.0, 1000.0", "8000.0, 8000.0");
     let rows = entries(20_000, "(role: \"robot\", count: 1, center: (5.0, 7.#), width_m: 0.0)");
     at_once(here, &format!("{wide}team: [{rows}],{TASK})"), "must leave at least 0.8 m between");
