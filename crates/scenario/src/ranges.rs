@@ -1,5 +1,7 @@
 //! Ranges of numbers and lengths of lists: the paths of [`limits`] lead to the places of a file.
 
+use std::fmt::{self, Write};
+
 use ron_tree::limits::Limit;
 use ron_tree::{Node, Value};
 
@@ -65,20 +67,21 @@ pub(super) fn all() -> Vec<(String, Limit)> {
 /// the lengths let the other rules be checked.
 pub(super) fn in_range(check: &mut Checker, file: &Node) -> bool {
     let all = all();
-    let rules: Vec<Rule> = all.iter().map(|(path, limit)| (path.as_str(), *limit)).collect();
+    let parts: Vec<Vec<&str>> = all.iter().map(|(path, _)| path.split('.').collect()).collect();
+    let rules: Vec<Rule> = parts.iter().zip(&all).map(|(parts, (_, limit))| (&parts[..], *limit)).collect();
     let mut walk = Walk { check, path: String::new(), is_sound: true };
     walk.node(file, &rules);
     walk.is_sound
 }
 
-/// The rest of a path, and what may be there.
-type Rule<'r> = (&'r str, Limit);
+/// The rest of a path, part by part, and what may be there.
+type Rule<'r> = (&'r [&'r str], Limit);
 
 /// The rules one step further down: those whose next part is `part`.
 fn below<'r>(rules: &[Rule<'r>], part: impl Fn(&str) -> bool) -> Vec<Rule<'r>> {
     let step = |(path, limit): &Rule<'r>| {
-        let (head, tail) = path.split_once('.').unwrap_or((path, ""));
-        (!head.is_empty() && part(head)).then_some((tail, *limit))
+        let (head, tail) = path.split_first()?;
+        part(head).then_some((tail, *limit))
     };
     rules.iter().filter_map(step).collect()
 }
@@ -92,15 +95,12 @@ struct Walk<'c> {
 
 impl Walk<'_> {
     fn node(&mut self, node: &Node, rules: &[Rule]) {
-        if rules.is_empty() {
-            return;
-        }
         let here = rules.iter().filter(|(path, _)| path.is_empty()).map(|(_, limit)| *limit);
         let here = here.reduce(|a, b| Limit { least: a.least.max(b.least), most: a.most.min(b.most), ..a });
         match (&node.value, here) {
             (Value::Word(word), Some(limit)) => {
                 if let Ok(number) = word.parse() {
-                    self.check.number(&self.path, number, limit);
+                    self.check.number(&self.path[1..], number, limit);
                 }
             }
             (Value::List(entries), Some(limit)) => self.length(entries.len(), limit),
@@ -112,8 +112,8 @@ impl Walk<'_> {
 
     fn length(&mut self, length: usize, limit: Limit) {
         // A list within an entry that is too short hides no other mistake.
-        self.is_sound &= limit.allows(length) || length <= limit.count() && self.path.contains('.');
-        self.check.entries(&self.path, length, limit);
+        self.is_sound &= limit.allows(length) || length <= limit.count() && self.path[1..].contains('.');
+        self.check.entries(&self.path[1..], length, limit);
     }
 
     fn inner(&mut self, node: &Node, rules: &[Rule]) {
@@ -132,30 +132,36 @@ impl Walk<'_> {
             }
             Value::List(entries) | Value::Tuple(_, entries) => {
                 let rules = below(rules, |part| part == "[]" || part == "*");
-                let is_named = ["roles", "needs", "tasks"].contains(&self.path.as_str());
+                let is_named = [".roles", ".needs", ".tasks"].contains(&self.path.as_str());
                 for (i, entry) in entries.iter().enumerate() {
-                    let name = entry.get("name").and_then(Node::as_text).filter(|_| is_named);
-                    let segment = name.map_or_else(|| format!("[{i}]"), |name| format!(".{name}"));
-                    self.step(&segment, entry, &rules);
+                    let name = is_named.then(|| entry.get("name").and_then(Node::as_text)).flatten();
+                    match name {
+                        Some(name) => self.step(format_args!(".{name}"), entry, &rules),
+                        None => self.step(format_args!("[{i}]"), entry, &rules),
+                    }
                 }
             }
             Value::Map(entries) => {
                 let rules = below(rules, |part| part == "*");
-                entries.iter().for_each(|(key, entry)| self.step(&format!(".{key}"), entry, &rules));
+                entries.iter().for_each(|(key, entry)| self.step(format_args!(".{key}"), entry, &rules));
             }
             Value::Struct(name, fields) => {
                 let rules = of_variant(rules, name);
                 for (field, value) in fields {
                     let Some(field) = field.as_word() else { continue };
-                    self.step(&format!(".{field}"), value, &below(&rules, |part| matches(part, field)));
+                    let below = below(&rules, |part| matches(part, field));
+                    self.step(format_args!(".{field}"), value, &below);
                 }
             }
         }
     }
 
-    fn step(&mut self, segment: &str, node: &Node, rules: &[Rule]) {
+    fn step(&mut self, segment: fmt::Arguments<'_>, node: &Node, rules: &[Rule]) {
+        if rules.is_empty() {
+            return;
+        }
         let end = self.path.len();
-        self.path += if end == 0 { segment.trim_start_matches('.') } else { segment };
+        let _ = write!(self.path, "{segment}"); // a String takes all
         self.node(node, rules);
         self.path.truncate(end);
     }
@@ -167,14 +173,13 @@ fn of_variant<'r>(rules: &[Rule<'r>], name: &str) -> Vec<Rule<'r>> {
         return rules.to_vec();
     }
     let mut inside = below(rules, |part| part == name);
-    inside.extend(rules.iter().filter(|(path, _)| !path.starts_with(char::is_uppercase)));
+    let names_none = |path: &[&str]| path.first().is_none_or(|head| !head.starts_with(char::is_uppercase));
+    inside.extend(rules.iter().filter(|(path, _)| names_none(path)));
     inside
 }
 
 /// Whether a part of a path, perhaps with a star, is that of this field.
 pub(super) fn matches(part: &str, name: &str) -> bool {
-    match part.split_once('*') {
-        Some((before, after)) => name.starts_with(before) && name.ends_with(after),
-        None => part == name,
-    }
+    let star = part.bytes().position(|byte| byte == b'*'); // faster than a search in text
+    star.map_or(part == name, |at| name.starts_with(&part[..at]) && name.ends_with(&part[at + 1..]))
 }
