@@ -110,7 +110,8 @@ def test_a_question_that_cannot_be_read_says_so(short: usar.Scenario) -> None:
     with pytest.raises(ValueError, match="the question: missing field `schema_version`"):
         usar.group({})  # type: ignore[typeddict-item]
     with pytest.raises(ValueError, match="schema_version must be 3, found 2; since version 3, levels stand in"):
-        usar.group({**question, "schema_version": 2})
+        question["schema_version"] = 2
+        usar.group(question)
 
 
 def test_answers_without_an_end_are_refused(short: usar.Scenario) -> None:
