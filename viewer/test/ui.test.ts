@@ -80,7 +80,7 @@ describe('events', () => {
   it('are told in words, and are about robots', () => {
     const loaded = { time: 3, kind: 'Loaded', fields: { robot: 3, rescuee: 37, resource_of: 5 } };
     expect(eventText(loaded)).toBe('loaded, robot 3, rescuee 37, resource of 5');
-    expect(eventText({ time: 0, kind: 'ErrandsOver', fields: {} })).toBe('errands over');
+    expect(eventText({ time: 0, kind: 'Finished', fields: {} })).toBe('finished');
     expect([3, 5, 37].map((robot) => concerns(loaded, robot))).toEqual([true, true, false]);
     expect(concerns({ time: 0, kind: 'Deadlocked', fields: { robots: [1, 2] } }, 2)).toBe(true);
   });

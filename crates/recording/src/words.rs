@@ -158,7 +158,7 @@ fn sentence(event: &Event, names: Names) -> String {
             let cause: &CutOffCause = cause;
             format!("the team no longer waits for robot {robot}, which {} to {}", cause.name(), at(*place))
         }
-        Event::ErrandsOver => "all errands are over".to_owned(),
+        Event::Finished => "all is done".to_owned(),
         Event::MissionOver => "no robot that can carry is left".to_owned(),
         Event::Standstill => "no round can begin, and no robot gets anywhere: the trial ends".to_owned(),
         Event::DebrisFell { debris } => format!("{} falls", names.debris(*debris)),
@@ -219,7 +219,7 @@ mod tests {
         let returned = Event::GroupReturned { task: TaskId(0), cause: ReturnCause::NothingLeft };
         let told = ToldEvent::new(1, 1.0, &returned, Names { tasks: &["north"], ..Names::default() });
         assert_eq!(told.says, "the group of north goes home: nothing left");
-        assert_eq!(ToldEvent::new(1, 1.0, &Event::ErrandsOver, Names::default()).event, "errands_over");
+        assert_eq!(ToldEvent::new(1, 1.0, &Event::Finished, Names::default()).event, "finished");
         let slab = DebrisFile {
             shape: DebrisShape::Disc(1.0),
             at: [0.0; 2],

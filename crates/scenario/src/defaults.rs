@@ -8,7 +8,7 @@ use teaming::GroupSizes;
 use super::file::{
     BeliefSharing, CostUnit, Costs, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure,
     MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile,
-    RoleKind, RoundEnd, TurnBack,
+    MissionEnd, RoleKind, RoundEnd, TurnBack,
 };
 use crate::{Rates, WorkRates};
 
@@ -100,6 +100,7 @@ impl Default for MissionRules {
             rest_at_home: RestAtHome::DuringRound,
             load_at_rest: LoadAtRest::Delivered,
             round_end: RoundEnd::EverybodyHome,
+            ends: MissionEnd::WhenDone,
             group_sizes: GroupSizes::Parts,
             may_idle: false,
             empty_tasks: EmptyTasks::GetNobody,

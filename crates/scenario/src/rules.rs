@@ -119,6 +119,17 @@ pub enum RoundEnd {
     WithoutResting,
 }
 
+/// When a trial with a mission ends, if not because no robot can carry or get anywhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum MissionEnd {
+    /// When a round ends with nobody left to bring home and no event to come: no other round begins, robots
+    /// that are still out come home, and the trial is over. At `duration_s` at the latest. The default.
+    #[default]
+    WhenDone,
+    /// At `duration_s`.
+    AtDuration,
+}
+
 /// Who goes to a task of which the team knows that no rescuee waits there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum EmptyTasks {
@@ -169,6 +180,8 @@ pub struct MissionRules {
     pub load_at_rest: LoadAtRest,
     /// Who must be home before the next round begins.
     pub round_end: RoundEnd,
+    /// When the mission ends.
+    pub ends: MissionEnd,
     /// How far groups must have the sizes that the question says, where no quota of a task binds.
     pub group_sizes: GroupSizes,
     /// Whether a policy may leave robots idle at home.

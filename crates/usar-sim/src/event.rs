@@ -198,8 +198,8 @@ pub enum Event {
         /// Why: `NoWay` or `NoProgress`.
         cause: CutOffCause,
     },
-    /// All errands are done or given up.
-    ErrandsOver,
+    /// Nobody is left to bring home; or all errands are done or given up.
+    Finished,
     /// No robot that can carry is left.
     MissionOver,
     /// Debris fell.

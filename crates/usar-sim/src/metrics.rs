@@ -194,7 +194,7 @@ impl Metrics {
                 | Event::Sighted { .. }
                 | Event::RestStarted { .. }
                 | Event::RestEnded { .. }
-                | Event::ErrandsOver
+                | Event::Finished
                 | Event::MissionOver
                 | Event::Standstill
                 | Event::Heard { .. }

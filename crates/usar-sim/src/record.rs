@@ -19,8 +19,8 @@ pub enum Status {
     Completed,
     /// No robot that can carry was left before the time was over.
     NobodyCanCarry,
-    /// All errands were done or given up before the time was over.
-    ErrandsOver,
+    /// Nobody was left to bring home, or all errands were done or given up, before the time was over.
+    Finished,
     /// No round could begin and no robot got anywhere, before the time was over.
     Stalled,
     /// Something went wrong. The numbers go up to that moment and must not be used.
@@ -33,7 +33,7 @@ impl Status {
         match self {
             Self::Completed => "completed",
             Self::NobodyCanCarry => "nobody_can_carry",
-            Self::ErrandsOver => "errands_over",
+            Self::Finished => "finished",
             Self::Stalled => "stalled",
             Self::Failed(_) => "failed",
         }

@@ -32,7 +32,7 @@ class Record:
 
     @property
     def status(self) -> str:
-        """How the trial ended: `completed`, `nobody_can_carry`, `errands_over` or `stalled`."""
+        """How the trial ended: `completed`, `nobody_can_carry`, `finished` or `stalled`."""
         return re.sub(r"(?<!^)(?=[A-Z])", "_", self.fields["status"]).lower()
 
     @property

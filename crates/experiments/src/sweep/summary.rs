@@ -41,7 +41,7 @@ impl Summary {
 
 /// The status with this name.
 pub(super) fn status_of(name: &str) -> Option<&'static str> {
-    let ended = [Status::Completed, Status::NobodyCanCarry, Status::ErrandsOver, Status::Stalled];
+    let ended = [Status::Completed, Status::NobodyCanCarry, Status::Finished, Status::Stalled];
     let ended = ended.map(|status| status.name());
     let faults = FaultKind::ALL.map(FaultKind::name);
     ended.into_iter().chain(faults).find(|known| *known == name)

@@ -45,6 +45,11 @@ impl Ledger {
         &self.rounds[..self.rounds.len() - usize::from(self.is_open)]
     }
 
+    /// Whether a round has begun and not ended.
+    pub(crate) fn is_open(&self) -> bool {
+        self.is_open
+    }
+
     /// The ledger as it counts in the hash chain.
     pub(super) fn to_hash(&self) -> impl Serialize + '_ {
         let Self { rounds, is_open, start_s, spent, spent_at_start, digest } = self;

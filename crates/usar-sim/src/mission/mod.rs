@@ -65,8 +65,8 @@ pub struct Mission {
 pub enum Ending {
     /// No robot that can carry is left.
     NobodyCanCarry,
-    /// All errands are done or given up.
-    ErrandsOver,
+    /// Nobody is left to bring home; or all errands are done or given up.
+    Finished,
     /// No round can begin, and no robot gets anywhere.
     Standstill,
 }
@@ -90,14 +90,16 @@ impl Mission {
     }
 
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
-    /// round waits for its assignment: see [`Mission::question`]. Returns the robots that the base restocks.
-    pub(crate) fn prepare(&mut self, scene: &mut Scene) -> Vec<RobotId> {
+    /// round waits for its assignment: see [`Mission::question`]. With `is_done`, nobody is left to bring home
+    /// and no event is to come. Returns the robots that the base restocks.
+    pub(crate) fn prepare(&mut self, is_done: bool, scene: &mut Scene) -> Vec<RobotId> {
         self.crew.look_for_guides(&scene.model.mission, &scene.beliefs.team);
         if !scene.model.errands.is_empty() {
             if self.crew.follow_errands(scene) {
-                self.ending = Some(Ending::ErrandsOver);
-                scene.log.push(Event::ErrandsOver);
+                self.end(Ending::Finished, scene);
             }
+        } else if self.round > 0 && is_done {
+            self.come_home(scene);
         } else if scene.beliefs.team.iter().any(|robot| robot.is_able() && robot.can_carry()) {
             let crew = &mut self.crew;
             crew.note_progress(scene);
@@ -106,14 +108,32 @@ impl Mission {
                 return self.open_round(scene);
             }
             if crew.is_at_a_standstill(scene) {
-                self.ending = Some(Ending::Standstill);
-                scene.log.push(Event::Standstill);
+                self.end(Ending::Standstill, scene);
             }
         } else {
-            self.ending = Some(Ending::NobodyCanCarry);
-            scene.log.push(Event::MissionOver);
+            self.end(Ending::NobodyCanCarry, scene);
         }
         Vec::new()
+    }
+
+    fn end(&mut self, ending: Ending, scene: &mut Scene) {
+        self.ending = Some(ending);
+        scene.log.push(match ending {
+            Ending::NobodyCanCarry => Event::MissionOver,
+            Ending::Finished => Event::Finished,
+            Ending::Standstill => Event::Standstill,
+        });
+    }
+
+    /// Ends the last round, and the mission once the robots that are still out have come home.
+    fn come_home(&mut self, scene: &mut Scene) {
+        self.crew.note_progress(scene);
+        if scene.beliefs.ledger.is_open() && self.crew.everybody_is_home(scene) {
+            self.end_round(scene);
+        }
+        if self.crew.all_stay(scene) {
+            self.end(Ending::Finished, scene);
+        }
     }
 
     /// Decides what every robot does next, and sets its goal.

@@ -160,9 +160,14 @@ impl Crew {
         robots.iter().filter(stands).count() as u32
     }
 
-    /// Whether nothing can happen any more in a mission: no round can begin, no event is to come, and every
-    /// robot that can act is at home, or has been cut off and come no nearer for as long again.
+    /// Whether nothing can happen any more in a mission: no round can begin, no event is to come, and no robot
+    /// gets anywhere.
     pub(super) fn is_at_a_standstill(&self, scene: &Scene) -> bool {
+        !scene.awaits_event && self.all_stay(scene) && !self.can_begin_round(scene)
+    }
+
+    /// Whether every robot that can act is at home, or has been cut off and come no nearer for as long again.
+    pub(super) fn all_stay(&self, scene: &Scene) -> bool {
         let stays = |robot: &Robot| {
             let (agent, model) = (&self.agents[robot.id.index()], scene.model);
             let is_home = || scene.navigator.traveller(robot.id).has_arrived(robot.position);
@@ -171,8 +176,7 @@ impl Crew {
                 _ => agent.is_cut_off && self.is_held_up_for(2.0, robot, model),
             }
         };
-        let mut able = scene.beliefs.team.iter().filter(|robot| robot.is_able());
-        !scene.awaits_event && able.all(stays) && !self.can_begin_round(scene)
+        scene.beliefs.team.iter().filter(|robot| robot.is_able()).all(stays)
     }
 
     /// Why a robot cannot get to its goal; `None` if it has arrived or still makes progress.

@@ -258,7 +258,7 @@ impl Simulation {
         }
         match self.state.mission.ending {
             Some(Ending::NobodyCanCarry) => Some(Status::NobodyCanCarry),
-            Some(Ending::ErrandsOver) => Some(Status::ErrandsOver),
+            Some(Ending::Finished) => Some(Status::Finished),
             Some(Ending::Standstill) => Some(Status::Stalled),
             None => (self.state.step >= self.model().steps).then_some(Status::Completed),
         }

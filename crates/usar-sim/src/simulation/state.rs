@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use scenario::LevelSource;
+use scenario::{LevelSource, MissionEnd};
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
@@ -25,7 +25,7 @@ use crate::robot::{Robot, STANDING_MPS};
 use crate::sensors::{base, look_around, team_mates};
 use crate::tally::{Tally, delay_cause};
 use crate::telemetry::Telemetry;
-use crate::world::World;
+use crate::world::{Rescuee, RescueeState, World};
 
 /// Difference between two sums of the same costs that counts as rounding, as a share.
 const COSTS_ROUNDING: f64 = 1e-9;
@@ -198,10 +198,24 @@ impl State {
         mission.with_telemetry(&mut scene, Telemetry::step);
     }
 
+    /// Whether nobody is left to bring home and no event is to come. Who is on board of a robot that can no
+    /// longer act cannot be brought home.
+    fn is_done(&self, model: &Model) -> bool {
+        let Self { world, timeline, .. } = self;
+        let is_left = |rescuee: &Rescuee| match rescuee.state {
+            RescueeState::Waiting => true,
+            RescueeState::OnBoard(robot) => world.robots[robot.index()].is_able(),
+            RescueeState::Rescued | RescueeState::Absent => false,
+        };
+        let ends_when_done = model.mission.ends == MissionEnd::WhenDone;
+        ends_when_done && !timeline.is_to_come(model) && !world.rescuees.iter().any(is_left)
+    }
+
     /// Rounds end and begin; the base restocks robots.
     pub(super) fn prepare(&mut self, model: &Model) {
+        let is_done = self.is_done(model);
         let (mission, mut scene) = self.scene(model);
-        for robot in mission.prepare(&mut scene) {
+        for robot in mission.prepare(is_done, &mut scene) {
             self.world.restock(robot);
         }
     }

@@ -66,7 +66,7 @@ fn an_errand_is_given_up_by_a_robot_that_comes_no_nearer() {
         walls: [(from: (10.0, 0.0), to: (10.0, 10.0), thickness_m: 0.3, doors: [(at_m: 5.0, width_m: 1.3)])]"#;
     let record = trial(&scenario(keeper), |_, _, _| {});
     let counts = record.counts;
-    assert_eq!((record.status, record.stalled), (Status::ErrandsOver, 0), "it went on to its second place");
+    assert_eq!((record.status, record.stalled), (Status::Finished, 0), "it went on to its second place");
     assert_eq!((counts.errands_done, counts.unreachable), (1, 0), "there is a way, but it was not free");
     let [cut_off] = record.cut_off[..] else { panic!("{:?}", record.cut_off) };
     assert_eq!((cut_off.place, cut_off.cause), ([17.0, 5.0], CutOffCause::NoProgress));
@@ -103,7 +103,7 @@ fn a_robot_in_a_queue_that_gets_on_gives_up_nothing() {
     );
     let longest = record.robots.iter().map(|robot| robot.longest_stall_s).fold(0.0, f64::max);
     assert!(longest > 20.0, "robots wait for longer than `cut_off_s`: {longest} s");
-    assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 64));
+    assert_eq!((record.status, record.counts.errands_done), (Status::Finished, 64));
     assert_eq!((record.counts.unreachable, record.cut_off.len()), (0, 0));
 }
 
@@ -114,7 +114,7 @@ fn slow_robots_have_in_proportion_longer() {
         r#"duration_s: 1500.0, mission: (cut_off_s: 10.0),
         roles: [(name: "robot", radius_m: 0.25, speed_mps: 0.05, sensing_m: 100.0)]"#,
     );
-    assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 8));
+    assert_eq!((record.status, record.counts.errands_done), (Status::Finished, 8));
 }
 
 /// The door to all places opens late.
@@ -132,10 +132,10 @@ fn errands_wait_for_a_way_that_an_event_may_open() {
         trial(&scenario(&fields), |_, _, _| {})
     };
     let opened = gate(100);
-    assert_eq!((opened.status, opened.counts.errands_done), (Status::ErrandsOver, 1));
+    assert_eq!((opened.status, opened.counts.errands_done), (Status::Finished, 1));
     assert!((104.0..115.0).contains(&opened.time_s), "{} s", opened.time_s);
     let never = gate(500);
-    assert_eq!((never.status, never.counts.unreachable), (Status::ErrandsOver, 1));
+    assert_eq!((never.status, never.counts.unreachable), (Status::Finished, 1));
     assert!(never.time_s < 20.0, "an event after the end is not waited for: {} s", never.time_s);
 }
 
@@ -147,7 +147,7 @@ fn a_robot_notices_what_it_touches() {
         errands: [(robot: 0, to: [(18.0, 5.0)])],
         debris: [(shape: Box(1.0, 3.0), at: (10.0, 5.0))]"#;
     let record = trial(&scenario(fields), |_, _, _| {});
-    assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 1));
+    assert_eq!((record.status, record.counts.errands_done), (Status::Finished, 1));
 }
 
 /// A robot needs rest soon. Debris covers the rest places of the tasks with a mark.

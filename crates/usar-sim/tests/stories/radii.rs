@@ -26,7 +26,7 @@ fn doorway(detour: bool) -> String {
 #[test]
 fn a_small_robot_passes_the_small_gap_and_a_large_one_takes_the_detour() {
     let record = trial(&scenario(&doorway(true)), |_, _, _| {});
-    assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 2));
+    assert_eq!((record.status, record.counts.errands_done), (Status::Finished, 2));
     let [small, large] = [0, 1].map(|robot: usize| record.robots[robot].distance_m);
     assert!(small < 12.0 && large > 18.0, "{small} m, {large} m");
 }
@@ -34,7 +34,7 @@ fn a_small_robot_passes_the_small_gap_and_a_large_one_takes_the_detour() {
 #[test]
 fn a_small_robot_passes_the_small_gap_and_a_large_one_gives_up() {
     let record = trial(&scenario(&doorway(false)), |_, _, _| {});
-    assert_eq!((record.status, record.counts.errands_done), (Status::ErrandsOver, 1));
+    assert_eq!((record.status, record.counts.errands_done), (Status::Finished, 1));
     assert_eq!(record.counts.unreachable, 1);
     assert!(record.robots[0].distance_m < 12.0 && record.robots[1].distance_m < 12.0);
 }

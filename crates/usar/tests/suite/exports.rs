@@ -105,7 +105,7 @@ fn every_event_of_a_trial_has_its_time() {
     assert!(times.is_sorted() && times.len() > 5, "{lines}");
     let kinds: Vec<&str> = events.iter().map(|event| event["event"].as_str().unwrap()).collect();
     assert_eq!(kinds.iter().filter(|kind| **kind == "errand_done").count(), 2, "{lines}");
-    assert_eq!(kinds.last(), Some(&"errands_over"));
+    assert_eq!(kinds.last(), Some(&"finished"));
     let again = run(&["run", &scenario(), "--events", "e.jsonl"]);
     assert_eq!(again.status.code(), Some(2));
     assert_eq!(read(&folder.path().join("e.jsonl")), lines);

@@ -161,7 +161,7 @@ impl Totals {
             self.standstills += 1;
             println!("{name}: all stood for {:.1} s", journeys.standstill_s);
         }
-        if !is_mission && record.status.name() != "errands_over" {
+        if !is_mission && record.status.name() != "finished" {
             self.undone += 1;
             println!("{name}: {} robots, errands not over in time", record.robots.len());
         }
