@@ -14,7 +14,7 @@ use teaming::{Asked, Question, Session};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{Advance, Ask, AssignError, Simulation};
 use usar_sim::snapshot::Identity;
-use xtask::golden;
+use xtask::golden::{self, Goldens};
 
 use crate::support::{self, paper, paper_with, policy};
 
@@ -232,11 +232,23 @@ fn the_order_of_trials_changes_nothing() {
 }
 
 /// Renewed by `just golden` only, with a line in the changelog. CI compares the same file with a release
-/// build.
+/// build. Where what comes out of trials changes, the number of the program's bits must be raised.
 #[test]
-fn the_small_worlds_have_their_golden_hashes() {
+fn what_comes_out_of_trials_changes_only_with_the_number_of_bits() {
     let expected = std::fs::read_to_string(golden::path()).unwrap();
-    assert_eq!(golden::hashes(), expected, "numbers changed: see docs/determinism.md");
+    let now = Goldens::computed();
+    assert_eq!(now.refused_after(&Goldens::parse(&expected).unwrap()), None);
+    assert_eq!(now.to_string(), expected, "`just golden` renews it: see docs/determinism.md");
+    let other = |from: &str, to: &str| Goldens::parse(&expected.replacen(from, to, 1)).unwrap();
+    let (line, bits) = (expected.lines().nth(1).unwrap(), expected.lines().next().unwrap());
+    let [name, state, outcome] = line.split(' ').collect::<Vec<_>>().try_into().unwrap();
+    let refusal = |line: &str| now.refused_after(&other(&format!("{name} {state} {outcome}"), line));
+    assert!(refusal(&format!("{name} {state} 0")).unwrap().contains("usar_sim::BITS must be raised"));
+    assert!(refusal(&format!("{name} 0 {outcome}")).unwrap().contains("HASH_FORMAT must be raised"));
+    assert_eq!(
+        now.refused_after(&other(&format!("{bits}\n{line}"), &format!("bits 0 hash_format 0\n{name} 0 0"))),
+        None
+    );
 }
 
 #[test]

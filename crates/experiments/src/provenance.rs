@@ -10,7 +10,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::experiment::{Axis, Experiment, Keep, Program, Seeds, Shard};
 
 /// Version of the folder's layout.
-pub const SCHEMA_VERSION: u32 = 8;
+pub const SCHEMA_VERSION: u32 = 9;
 
 /// Largest number of trials that a sweep may have for each case and policy.
 const MAX_TRIALS: u32 = 1_000_000;
@@ -32,6 +32,8 @@ pub struct Manifest {
     pub commit: String,
     /// Hash of the sources that decide every trial: all but those of the policies.
     pub source: String,
+    /// Number of the bits: trials of one number are the same for the same scenario, policy and seed.
+    pub bits: u32,
     /// Features that change numbers.
     features: Vec<String>,
     /// Name of the sweep.
@@ -80,6 +82,7 @@ impl Manifest {
             version: experiment.program.version.clone(),
             commit: COMMIT.into(),
             source: experiment.program.source.clone(),
+            bits: experiment.program.bits,
             features: ENGINE_FEATURES.map(str::to_owned).to_vec(),
             name: experiment.name.clone(),
             policies: experiment.policies.iter().map(|policy| policy.written().to_owned()).collect(),
@@ -151,7 +154,7 @@ impl Manifest {
     /// The program that made the results.
     pub fn program(&self) -> Program {
         let (version, source) = (self.version.clone(), self.source.clone());
-        Program { version, source, policies: self.policy_sources.clone() }
+        Program { version, source, bits: self.bits, policies: self.policy_sources.clone() }
     }
 
     /// Why the other results do not have all policies of these; `None` if they do.
@@ -183,8 +186,7 @@ impl Manifest {
                 differences.push(format!("{what}: {there} there, {now} now"));
             }
         };
-        let program = |m: &Self| format!("usar {} with source {}", m.version, m.source);
-        compare("program", program(self), program(other));
+        compare("bits", self.bits.to_string(), other.bits.to_string());
         let axes = |m: &Self| {
             let set = |axis: &Axis, value: &String| {
                 let settings =

@@ -19,6 +19,9 @@ pub struct Header {
     pub version: u32,
     /// The program that wrote the recording.
     pub program: String,
+    /// Number of its bits: see [`usar_sim::BITS`]; 0 in recordings of programs without one.
+    #[serde(default)]
+    pub bits: u32,
     /// The scenario.
     pub scenario: ScenarioText,
     /// Label of the policy.
@@ -198,6 +201,7 @@ impl Header {
         Self {
             version: VERSION,
             program: format!("usar {}", env!("CARGO_PKG_VERSION")),
+            bits: usar_sim::BITS,
             scenario: ScenarioText {
                 name: scenario.name.clone(),
                 description: scenario.description.clone(),

@@ -162,10 +162,7 @@ fn page<'a>(folder: &'a Folder, case: usize, comparisons: &[&'a Comparison], all
     };
     let part = manifest.shard.map_or(String::new(), |_| format!(", dealt out: this is {}", manifest.part()));
     let mut facts = vec![
-        (
-            "program",
-            format!("usar {}, commit {}, source {}", manifest.version, manifest.commit, manifest.source),
-        ),
+        ("program", format!("usar {}, bits {}, commit {}", manifest.version, manifest.bits, manifest.commit)),
         ("trials", format!("{} for each case and policy, seeds {seeds}{part}", experiment.trials)),
         ("policies", manifest.policies.join(", ")),
         ("invariants checked", if manifest.is_checked { "all, at every step".into() } else { "no".into() }),

@@ -6,9 +6,9 @@ use rne_core::hierarchy::NeedLevel;
 use teaming::GroupSizes;
 
 use super::file::{
-    BeliefSharing, CostUnit, Costs, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure,
+    BeliefSharing, CostUnit, Costs, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure, MissionEnd,
     MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile,
-    MissionEnd, RoleKind, RoundEnd, TurnBack,
+    RoleKind, RoundEnd, TurnBack,
 };
 use crate::{Rates, WorkRates};
 

@@ -37,6 +37,8 @@ pub enum Purpose {
     Message = 12,
     /// The place of a rescuee that a robot makes up, by robot and number.
     Phantom = 13,
+    /// The order in which robots speak at a step.
+    Turn = 14,
 }
 
 /// The stream of one purpose and entity in one trial.

@@ -174,7 +174,7 @@ pub fn write_page(
         scenarios: judged.iter().map(|scenario| scenario.scenario.as_str()).collect(),
         sections,
         command: format!("usar yang2021 claims --trials {trials}"),
-        program: format!("usar {}, source {}, study {}", program.version, program.source, crate::STUDY),
+        program: format!("usar of {program}, study {}", crate::STUDY),
     };
     let page = page.render().map_err(Failure::run)?;
     let mut report = Report::of(out);

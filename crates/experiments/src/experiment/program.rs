@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use store::Failure;
 use teaming::MadePolicy;
+use usar_sim::BITS;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::policy::PolicySpec;
@@ -12,30 +13,32 @@ use super::policy::PolicySpec;
 /// Hash of the sources that decide every trial: all but those of the policies.
 pub const SOURCE: &str = env!("USAR_ENGINE");
 
-/// The program as far as it decides the trials of a sweep. A policy's trials stay valid as long as the
-/// simulator and the policy's own sources stay the same.
+/// The program as far as it decides the trials of a sweep. A policy's trials stay valid as long as the bits
+/// and the policy's own sources stay the same.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Program {
     /// Version of the program.
     pub version: String,
     /// Hash of the sources that decide every trial: all but those of the policies.
     pub source: String,
+    /// Number of the bits: see [`BITS`].
+    pub bits: u32,
     /// Hash of the sources of each policy of the sweep.
     pub policies: Vec<String>,
 }
 
-/// A program in short: results of programs with the same digest are the same.
+/// A program in short: trials of programs with the same digest are the same.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Digest {
-    /// Version of the program.
-    pub version: String,
-    /// Hash of the sources of the simulator, of the laboratory, and of policies.
-    pub source: String,
+    /// Number of the bits: see [`BITS`].
+    pub bits: u32,
+    /// Hash of the sources of the policies.
+    pub policies: String,
 }
 
 impl fmt::Display for Digest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "usar {} with source {}", self.version, self.source)
+        write!(f, "bits {}, policies {}", self.bits, self.policies)
     }
 }
 
@@ -47,20 +50,18 @@ impl Program {
     pub fn running(policies: &[PolicySpec]) -> Result<Self, Failure> {
         let policies = policies.iter().map(|spec| source_of(spec.made())).collect::<Result<_, _>>()?;
         let version = env!("CARGO_PKG_VERSION").to_owned();
-        Ok(Self { version, source: SOURCE.to_owned(), policies })
+        Ok(Self { version, source: SOURCE.to_owned(), bits: BITS, policies })
     }
 
-    /// The version, and one hash of the sources that decide the trials of these policies.
+    /// The bits, and one hash of the sources of these policies.
     pub fn digest(&self) -> Digest {
-        let text = format!("{} {}", self.source, self.policies.join(" "));
-        Digest { version: self.version.clone(), source: format!("{:016x}", xxh3_64(text.as_bytes())) }
+        let policies = format!("{:016x}", xxh3_64(self.policies.join(" ").as_bytes()));
+        Digest { bits: self.bits, policies }
     }
 
     /// What decides the trials of the policy with this number, as text.
     pub(super) fn deciding(&self, policy: usize) -> String {
-        let Self { version, source, policies } = self;
-        let own = policies.get(policy).map_or(String::new(), |own| format!(" {own}"));
-        format!("Program {{ version: {version:?}, source: {source:?} }}{own}")
+        format!("bits {} {}", self.bits, self.policies.get(policy).map_or("", String::as_str))
     }
 }
 

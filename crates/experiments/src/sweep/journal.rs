@@ -28,8 +28,7 @@ pub(super) struct Journal {
 
 /// The first line of a sweep's journal.
 pub(super) fn header(experiment: &Experiment) -> Header {
-    let (program, scenario) = (&experiment.program, deciding_text(&experiment.base));
-    Header::new("sweep", &format!("{} {} {scenario}", program.version, program.source))
+    Header::new("sweep", &format!("bits {} {}", experiment.program.bits, deciding_text(&experiment.base)))
 }
 
 impl Journal {

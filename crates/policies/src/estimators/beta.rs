@@ -2,7 +2,8 @@
 //!
 //! `r <- forget r + o`, `s <- forget s + 1 - o`, trust `(r + 1) / (r + s + 2)`, over the outcomes `o` of the
 //! base and of the mates alike (Josang, Ismail 2002, *The Beta Reputation System*). Earlier rounds are
-//! forgotten once a round, so that the order within a round does not matter.
+//! forgotten once in each round with an outcome, so that the order within a round does not matter. A round
+//! without one changes nothing.
 
 use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 

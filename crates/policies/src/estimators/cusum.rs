@@ -2,7 +2,7 @@
 //!
 //! `S <- max(0, S + (1 - x) / 0.15 - k)` with `x` the speed that was seen in terms of the speed that was
 //! said; trust `1 - min(1, S / h)` (Page 1954, *Continuous Inspection Schemes*). One `x` a round: the median
-//! of the mates' ratings.
+//! of the mates' ratings. A round without any changes nothing.
 
 use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 

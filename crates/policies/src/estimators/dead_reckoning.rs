@@ -12,7 +12,7 @@ use super::filter::{Rules, estimate, follow};
 use super::rounds::rounds;
 
 /// The rules of `Kalman` by default.
-const RULES: Rules = Rules { q: 4.0, r: 25.0, gate: 6.6349 };
+const RULES: Rules = Rules { q: 4.0, r: 25.0, gate: 6.6349, restart: 0 };
 
 /// Expects the levels of each robot and hears no report of it; believes everybody.
 #[derive(Debug, Clone, Copy)]

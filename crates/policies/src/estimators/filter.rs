@@ -18,6 +18,8 @@ pub(super) struct Rules {
     pub(super) r: f64,
     /// Greatest squared error of a report in terms of its variance.
     pub(super) gate: f64,
+    /// So many reports in a row that fail begin the level anew; 0 if none do.
+    pub(super) restart: u32,
 }
 
 /// What is thought of one level.
@@ -27,19 +29,29 @@ pub(super) struct Guess {
     pub(super) x: f64,
     /// Its variance, in square percent points.
     pub(super) p: f64,
+    /// The reports that failed since one passed.
+    pub(super) failed: u32,
 }
 
 impl Guess {
-    /// Takes a report in; returns whether it passed. One that fails the gate changes nothing.
+    pub(super) fn of(x: f64, p: f64) -> Self {
+        Self { x, p, failed: 0 }
+    }
+
+    /// Takes a report in; returns whether it passed. One that fails the gate changes nothing, unless so many
+    /// failed that the level begins anew with it.
     pub(super) fn hear(&mut self, z: f64, rules: &Rules) -> bool {
         let s = self.p + rules.r;
         let error = z - self.x;
         if error * error / s > rules.gate {
+            self.failed += 1;
+            if self.failed == rules.restart {
+                *self = Self::of(z, rules.r);
+            }
             return false;
         }
         let gain = self.p / s;
-        self.x += gain * error;
-        self.p *= 1.0 - gain;
+        *self = Self::of(self.x + gain * error, self.p * (1.0 - gain));
         true
     }
 }
@@ -54,7 +66,7 @@ pub(super) fn follow(
 ) -> (Vec<Guess>, Counts) {
     let at_first = |level: &Level| {
         let Expected { mean, sd } = level.expected.unwrap_or(UNKNOWN);
-        Guess { x: mean, p: sd * sd }
+        Guess::of(mean, sd * sd)
     };
     let mut guesses: Vec<Guess> = question.levels.iter().map(at_first).collect();
     let mut passes = Counts::default();
@@ -75,14 +87,14 @@ pub(super) fn follow(
 fn predict(guesses: &mut [Guess], seen: &Seen<'_>, q: f64, rest: Rest) {
     for (level, guess) in guesses.iter_mut().enumerate() {
         let used = seen.used.get(level).copied().unwrap_or_default();
-        *guess = Guess { x: guess.x - used, p: guess.p + q };
+        *guess = Guess { x: guess.x - used, p: guess.p + q, ..*guess };
     }
     if seen.rested {
         let lower = |low: usize, level: usize| if guesses[level].x < guesses[low].x { level } else { low };
         let lowest = (0..guesses.len()).fold(0, lower);
         for (level, guess) in guesses.iter_mut().enumerate() {
             if rest == Rest::All || level == lowest {
-                *guess = Guess { x: 100.0, p: q };
+                *guess = Guess::of(100.0, q);
             }
         }
     }
@@ -103,7 +115,7 @@ mod tests {
     use super::super::rounds::Said;
     use super::*;
 
-    const RULES: Rules = Rules { q: 4.0, r: 25.0, gate: 6.634_896_601_021_214_5 };
+    const RULES: Rules = Rules { q: 4.0, r: 25.0, gate: 6.634_896_601_021_214_5, restart: 0 };
 
     /// A question about the levels of the paper's team.
     fn question(rest: Rest) -> Question {
@@ -170,12 +182,29 @@ mod tests {
         );
     }
 
+    /// A robot that fell by 40 points at once says so from then on. Reference: an independent implementation
+    /// in Python.
+    #[test]
+    fn reports_that_fail_in_a_row_begin_a_level_anew() {
+        let said = [75.0, 40.0, 35.0, 30.0, 26.0];
+        let rounds: Vec<Seen<'_>> = said.map(|z| seen(Some(z), 5.0, false)).to_vec();
+        let energy = |restart| {
+            let (guesses, passes) = follow(&question(Rest::All), &rounds, &Rules { restart, ..RULES }, true);
+            ([guesses[0].x, guesses[0].p], passes.bad)
+        };
+        let (found, failed) = energy(3);
+        check(&[found], &[[25.537_037_037_037_038, 13.425_925_925_925_926]]);
+        assert!((failed - 3.0).abs() < 1e-12, "{failed}");
+        let (found, failed) = energy(0);
+        assert!(found[0] > 54.0 && (failed - 4.0).abs() < 1e-12, "{found:?} {failed}");
+    }
+
     /// Energy 63 and health 90 after a round: only energy is filled. Nothing is heard.
     #[test]
     fn where_a_rest_fills_one_level_the_other_stays() {
         let rounds = [seen(Some(1.0), 0.0, false), seen(None, 17.0, true)];
         let (guesses, passes) = follow(&question(Rest::Low), &rounds, &RULES, false);
-        let expected = vec![Guess { x: 100.0, p: 4.0 }, Guess { x: 90.0, p: 104.0 }];
+        let expected = vec![Guess::of(100.0, 4.0), Guess::of(90.0, 104.0)];
         assert_eq!((guesses, passes), (expected, Counts::default()));
     }
 }

@@ -4,12 +4,13 @@
 //! Markov Models*). `b` is how likely a robot is faulty: 0.05 at first, from then on `b- = b + (1 - b) 0.02`
 //! a round (a fault stays); `b = b- f1 / (b- f1 + (1 - b-) f0)` with the normal densities `f0 = N(1, 0.15)`
 //! of a healthy and `f1 = N(0.5, 0.25)` of a faulty robot at `x`, the speed that was seen in terms of the
-//! speed that was said. One `x` a round: the median of the mates' ratings. Trust is `1 - b`.
+//! speed that was said: the median of the mates' ratings in a round. In a round without any, `b = b-`. Trust
+//! is `1 - b`.
 
 use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};
 
 use super::last_said::{last_said, last_said_with};
-use super::speeds::ratios;
+use super::speeds::by_question_round;
 
 /// How likely a robot is faulty at first.
 const FIRST: f64 = 0.05;
@@ -37,17 +38,20 @@ pub fn kind() -> EstimatorKind {
 impl Estimator for Hmm {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
-        let trust =
-            ratios(question, evidence).into_iter().map(|ratios| (1.0 - faulty(&ratios)).clamp(0.0, 1.0));
-        last_said_with(question, trust)
+        let rounds = by_question_round(question, evidence);
+        last_said_with(question, rounds.into_iter().map(|rounds| (1.0 - faulty(&rounds)).clamp(0.0, 1.0)))
     }
 }
 
-/// How likely a robot with these speeds is faulty.
-fn faulty(ratios: &[f64]) -> f64 {
+/// How likely a robot with these speeds, round by round, is faulty.
+fn faulty(rounds: &[Option<f64>]) -> f64 {
     let mut b = FIRST;
-    for (round, x) in ratios.iter().enumerate() {
+    for (round, x) in rounds.iter().enumerate() {
         let before = if round == 0 { b } else { b + (1.0 - b) * FAILS };
+        let Some(x) = x else {
+            b = before;
+            continue;
+        };
         // Only the ratio of the densities counts, and it is finite where each of them may be 0.
         let odds = libm::exp(log_density(*x, FAULTY) - log_density(*x, HEALTHY)).min(f64::MAX);
         b = if odds > 1.0 {
@@ -72,7 +76,7 @@ mod tests {
     /// Reference: an independent implementation in Python.
     #[test]
     fn faults_are_as_likely_as_computed_elsewhere() {
-        let ratios = [1.02, 0.95, 0.55, 0.6, 0.4];
+        let ratios = [1.02, 0.95, 0.55, 0.6, 0.4].map(Some);
         let expected = [
             0.003_649_257_174_261_793_7,
             0.003_021_650_273_203_589_4,
@@ -85,6 +89,23 @@ mod tests {
             assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
         }
         assert!((faulty(&[]) - 0.05).abs() < 1e-15);
-        assert!(faulty(&[1e9]) <= 1.0 && faulty(&[0.0; 100]) <= 1.0 && faulty(&[1.0; 100]) > 0.0);
+        let all = |x| faulty(&[Some(x); 100]);
+        assert!(faulty(&[Some(1e9)]) <= 1.0 && all(0.0) <= 1.0 && all(1.0) > 0.0);
+    }
+
+    /// Reference: an independent implementation in Python.
+    #[test]
+    fn a_round_without_a_look_makes_a_fault_likelier_and_tells_nothing_else() {
+        let rounds = [Some(0.9), Some(0.72), None, Some(0.71), Some(1.05), Some(0.3)];
+        let expected = [
+            0.087_096_591_149_023_35,
+            0.243_454_660_102_028_99,
+            0.019_291_642_112_721_608,
+            0.998_942_864_218_156_4,
+        ];
+        for (count, expected) in (3..).zip(expected) {
+            let found = faulty(&rounds[..count]);
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
     }
 }

@@ -1,9 +1,11 @@
-//! `Kalman(q, r, gate)`: a Kalman filter with a gate for each level of each robot.
+//! `Kalman(q, r, gate, restart)`: a Kalman filter with a gate for each level of each robot.
 //!
 //! A level is expected to fall by what the robot's fit group-mates said that they spent: `x- = x - used`,
 //! `P- = P + q`; after a rest `x- = 100`, `P- = q`; at first `x-` and `P-` are what the base expects. With
 //! `S = P- + r`, a report `z` fails if `(z - x-)^2 / S > gate`, and changes nothing then; else `K = P- / S`,
-//! `x = x- + K (z - x-)`, `P = (1 - K) P-`. Trust is the mean of a Beta distribution of passes and failures
+//! `x = x- + K (z - x-)`, `P = (1 - K) P-`. The `restart`-th report in a row that fails begins the level
+//! anew: `x = z`, `P = r`, as a track is begun by a first measurement (3.2.5 there); it counts as failed. So
+//! a robot that lost much at once, by something that its mates did not meet, is believed again. Trust is the mean of a Beta distribution of passes and failures
 //! of all levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
 //! chi-square distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with
 //! Applications to Tracking and Navigation*, 5.4).
@@ -24,6 +26,8 @@ teaming::options! {
         pub r: f64 = 25.0,
         /// Greatest squared error of a report in terms of its variance; a report beyond it fails.
         pub gate: f64 = 6.6349,
+        /// Reports in a row that fail until a level begins anew; 0 if it never does.
+        pub restart: u32 = 0,
     }
 }
 
@@ -36,7 +40,7 @@ pub fn kind() -> EstimatorKind {
 
 impl Kalman {
     fn checked(self) -> Result<Self, String> {
-        let Self { q, r, gate } = self;
+        let Self { q, r, gate, .. } = self;
         match [("q", q), ("r", r), ("gate", gate)].into_iter().find(|(_, v)| !(v.is_finite() && *v > 0.0)) {
             Some((name, _)) => Err(format!("{name} must be a number above 0")),
             None => Ok(self),
@@ -47,8 +51,8 @@ impl Kalman {
 impl Estimator for Kalman {
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return as_said(question) };
-        let Self { q, r, gate } = *self;
-        let rules = Rules { q, r, gate };
+        let Self { q, r, gate, restart } = *self;
+        let rules = Rules { q, r, gate, restart };
         let of = |(member, seen): (_, Vec<_>)| {
             let (guesses, passes) = follow(question, &seen, &rules, true);
             Ok(Estimate { trust: passes.mean(), ..estimate(member, evidence, &guesses)? })

@@ -1,4 +1,4 @@
-//! `Wmsr(f)`: what mates saw of a robot's health, without the values that stand farthest out.
+//! `Wmsr(f, aged)`: what mates saw of a robot's health, without the values that stand farthest out.
 //!
 //! Each rater of a robot measures its health by its speed. Of these values the `f` farthest above and the
 //! `f` farthest below the base's own estimate are dropped (all, if fewer lie on that side); the health is
@@ -6,9 +6,10 @@
 //! Zhang, Koutsoukos, Sundaram 2013, *Resilient Asymptotic Consensus in Robust Networks*). Where the base
 //! has none, because it never heard the robot, the `f` largest and the `f` smallest values are dropped. It
 //! withstands `f` liars among at least `2 f + 1` raters. Values of the last round in which the robot was
-//! rated count.
+//! rated count; `aged`, less what the robot says to have lost since that round began (0 to 100 %): a value
+//! is of the moment at which the robot went fastest, and health has changed since.
 
-use teaming::{Estimate, Estimator, EstimatorKind, Evidence, PolicyError, Question};
+use teaming::{Estimate, Estimator, EstimatorKind, Evidence, PolicyError, Question, SaidRounds};
 
 use super::last_said::{last_said, member_of};
 
@@ -18,6 +19,8 @@ teaming::options! {
     pub struct Wmsr {
         /// Number of liars to withstand: values that are dropped on each side.
         pub f: u32 = 1,
+        /// Whether values are less what the robot says to have lost since.
+        pub aged: bool = false,
     }
 }
 
@@ -34,9 +37,14 @@ impl Estimator for Wmsr {
         let mut estimates = last_said(question)?;
         let Some(evidence) = &question.evidence else { return Ok(estimates) };
         let was_heard = was_heard(question, evidence);
+        let said = self.aged.then(|| SaidRounds::new(question, evidence));
         let all = question.members.iter().zip(measured(question, evidence)).zip(was_heard);
-        for (estimate, ((member, values), was_heard)) in estimates.iter_mut().zip(all) {
+        for (estimate, ((member, (round, mut values)), was_heard)) in estimates.iter_mut().zip(all) {
             let Some(level) = evidence.body(member.id).map(|body| body.slowed_by.index()) else { continue };
+            let begun = said.as_ref().and_then(|said| said.first(member.id, round)?.get(level).copied());
+            if let (Some(begun), Some(last)) = (begun, estimate.levels.get(level)) {
+                values.iter_mut().for_each(|value| *value = (*value - (begun - last)).clamp(0.0, 100.0));
+            }
             let own = estimate.levels.get(level).copied().filter(|_| was_heard);
             let kept = kept(own, values, self.f as usize);
             let Some(mean) = mean(&kept) else { continue };
@@ -66,8 +74,9 @@ fn was_heard(question: &Question, evidence: &Evidence) -> Vec<bool> {
     was_heard
 }
 
-/// For each member, the health that its raters measured in the last round in which it was rated, in percent.
-fn measured(question: &Question, evidence: &Evidence) -> Vec<Vec<f64>> {
+/// For each member, the last round in which it was rated, and the health that its raters measured then, in
+/// percent.
+fn measured(question: &Question, evidence: &Evidence) -> Vec<(u32, Vec<f64>)> {
     let mut last: Vec<(u32, Vec<f64>)> = vec![(0, Vec::new()); question.members.len()];
     for rating in &evidence.ratings {
         let body = evidence.body(rating.of);
@@ -81,7 +90,7 @@ fn measured(question: &Question, evidence: &Evidence) -> Vec<Vec<f64>> {
             values.push(hp);
         }
     }
-    last.into_iter().map(|(_, values)| values).collect()
+    last
 }
 
 /// The values that are kept, ascending but for the base's own estimate, which is the last.

@@ -107,6 +107,11 @@ pub struct BlackoutModel {
 }
 
 impl TelemetryModel {
+    /// Whether robots wait for one another before they speak.
+    pub(crate) fn has_turns(&self) -> bool {
+        self.medium.as_ref().is_some_and(|medium| medium.air_s > 0.0)
+    }
+
     /// The rules of a scenario; `None` where everybody knows how every robot is.
     pub(super) fn compile(
         scenario: &Scenario,

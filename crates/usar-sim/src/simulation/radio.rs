@@ -6,6 +6,7 @@ use super::State;
 use crate::ids::RescueeId;
 use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};
+use crate::telemetry::in_turn;
 
 impl State {
     /// Robots tell their group-mates what they noticed, and liars what they make up.
@@ -16,9 +17,9 @@ impl State {
         let (mission, mut scene) = self.scene(model);
         let crew = &mission.crew;
         mission.with_telemetry(&mut scene, |telemetry, now, log| {
-            for report in noticed {
-                let Speaker::Robot(robot) = report.from else { continue };
-                telemetry.tell_mates(report, crew.mates_of(robot), now, log);
+            for robot in in_turn(now.team.iter(), now) {
+                let own = noticed.iter().filter(|report| report.from == Speaker::Robot(robot.id));
+                own.for_each(|report| telemetry.tell_mates(report, crew.mates_of(robot.id), now, log));
             }
         });
     }

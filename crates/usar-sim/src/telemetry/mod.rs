@@ -32,6 +32,7 @@ use channel::Sending;
 use heard::{Report, Trip};
 use lie::{Told, said_of_mate};
 use radio::ForMate;
+pub(crate) use speech::in_turn;
 use witness::Witnesses;
 
 /// The state of the telemetry.
@@ -155,7 +156,7 @@ impl Telemetry {
         let Some(rules) = &now.model.telemetry else { return };
         self.look(now, rules);
         if now.model.is_due(now.step, rules.every_steps) {
-            now.team.iter().filter(|robot| robot.is_able()).for_each(|robot| self.report(robot, now, log));
+            self.report_all(now.team.iter().filter(|robot| robot.is_able()), now, log);
         }
         self.deliver(now.time_s(), log);
     }
@@ -167,8 +168,8 @@ impl Telemetry {
             if std::mem::take(&mut self.takes_new_name[robot.id.index()]) {
                 self.heard.known_since.insert(robot.id.0, now.round);
             }
-            self.report(robot, now, log);
         }
+        self.report_all(now.team.iter().filter(is_home), now, log);
         self.deliver(now.time_s(), log);
     }
 
@@ -213,7 +214,7 @@ impl Telemetry {
     /// A round is over: robots say what they saw of their mates.
     pub(crate) fn rate(&mut self, now: &Now<'_>, log: &mut EventLog) {
         let Some(rules) = &now.model.telemetry else { return };
-        for robot in now.team.iter().filter(|robot| robot.is_able()) {
+        for robot in in_turn(now.team.iter().filter(|robot| robot.is_able()), now) {
             for rating in self.witnesses.ratings(rules, robot.id, now.round) {
                 let top_mps = now.team[rating.of as usize].spec.speed_mps;
                 let said = self.tells(rules, robot.id, now, Lie::is_about_mates);

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use rand::seq::SliceRandom;
 use scenario::Lie;
+use scenario::seed::{Purpose, stream_at};
 use teaming::NeedId;
 
 use super::gauge::{Reading, read};
@@ -17,6 +19,16 @@ use crate::robot::Robot;
 /// Levels and needs of one robot have numbers of their own in streams of random numbers.
 const TOPICS: u64 = 128;
 
+/// The robots in the order in which they speak at a step. It is drawn where they wait for one another on the
+/// channel; it is that of their ids where nobody waits.
+pub(crate) fn in_turn<'t>(robots: impl Iterator<Item = &'t Robot>, now: &Now<'_>) -> Vec<&'t Robot> {
+    let mut robots: Vec<&Robot> = robots.collect();
+    if let Some(rules) = now.model.telemetry.as_ref().filter(|rules| rules.has_turns()) {
+        robots.shuffle(&mut stream_at(rules.seed, Purpose::Turn, 0, now.step));
+    }
+    robots
+}
+
 impl Telemetry {
     /// The lie of a kind that a robot tells now.
     pub(super) fn tells<'r>(
@@ -30,9 +42,31 @@ impl Telemetry {
         lies.into_iter().find(|lie| is_it(&lie.lie) && lie.is_told_at(now.time_s()))
     }
 
-    /// Lets a robot read its gauges and say how it is.
-    pub(super) fn report(&mut self, robot: &Robot, now: &Now<'_>, log: &mut EventLog) {
+    /// Lets robots read their gauges and say how they are. What some say under the names of others, they say
+    /// after all of them.
+    pub(super) fn report_all<'t>(
+        &mut self,
+        robots: impl Iterator<Item = &'t Robot>,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) {
         let Some(rules) = &now.model.telemetry else { return };
+        let robots = in_turn(robots, now);
+        let reports: Vec<Report> = robots.iter().map(|robot| self.report(robot, rules, now)).collect();
+        for (robot, report) in robots.iter().zip(&reports) {
+            self.send(Says::Levels(report.clone()), robot, now, log);
+        }
+        for (robot, report) in robots.into_iter().zip(reports) {
+            let other = self.tells(rules, robot.id, now, |lie| matches!(lie, Lie::Impersonate { .. }));
+            if let Some(Lie::Impersonate { name }) = other.map(|lie| &lie.lie) {
+                let false_one = Report { of: *name, by: *name, ..report };
+                self.send(Says::Levels(false_one), robot, now, log);
+            }
+        }
+    }
+
+    /// What a robot says of how it is, by its gauges and its lies.
+    fn report(&mut self, robot: &Robot, rules: &TelemetryModel, now: &Now<'_>) -> Report {
         let id = robot.id;
         let gauges = &rules.gauges[robot.role.index()];
         let last = self.read[id.index()];
@@ -45,7 +79,7 @@ impl Telemetry {
         let read = [reading(0, robot.energy), reading(1, robot.hp)];
         self.read[id.index()] = Some(read);
         let (levels, needs) = self.said(robot, read, now);
-        let report = Report {
+        Report {
             of: id.0,
             by: id.0,
             round: now.round,
@@ -54,14 +88,6 @@ impl Telemetry {
             levels,
             needs,
             sd: [gauges[0].sd, gauges[1].sd],
-        };
-        let other = self.tells(rules, id, now, |lie| matches!(lie, Lie::Impersonate { .. }));
-        let false_one = other.and_then(|lie| match lie.lie {
-            Lie::Impersonate { name } => Some(Report { of: name, by: name, ..report.clone() }),
-            _ => None,
-        });
-        for report in [Some(report), false_one].into_iter().flatten() {
-            self.send(Says::Levels(report), robot, now, log);
         }
     }
 

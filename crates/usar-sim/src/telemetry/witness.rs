@@ -6,7 +6,10 @@ use teaming::Rating;
 
 use crate::ids::RobotId;
 use crate::model::TelemetryModel;
-use crate::robot::Robot;
+use crate::robot::{Robot, STANDING_MPS};
+
+/// A mate that was never seen faster than this stood, in metres per second: how fast it can go was not seen.
+const LEAST_MPS: f64 = STANDING_MPS as f64;
 
 /// What a robot saw of a mate in this round.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -47,9 +50,10 @@ impl Witnesses {
         }
     }
 
-    /// What a robot has to say of its mates at the end of a round.
+    /// What a robot has to say of its mates at the end of a round: nothing of one that it never saw move.
     pub(super) fn ratings(&self, rules: &TelemetryModel, by: RobotId, round: u32) -> Vec<Rating> {
-        let looks = self.0[by.index()].iter().filter(|look| look.looks >= rules.witness.least_looks);
+        let tells = |look: &&Look| look.looks >= rules.witness.least_looks && look.speed_mps > LEAST_MPS;
+        let looks = self.0[by.index()].iter().filter(tells);
         let rating = |look: &Look| {
             let pair = u64::from(by.0) << 32 | u64::from(look.of.0);
             let mut draws = stream_at(rules.seed, Purpose::Witness, pair, u64::from(round));

@@ -199,7 +199,7 @@ impl Arguments {
         left_out: &BTreeSet<usize>,
     ) -> Result<(), Failure> {
         let (this, that) = (Program::running(&experiment.policies)?, manifest.program());
-        if (&that.version, &that.source) == (&this.version, &this.source) {
+        if that.bits == this.bits {
             let pairs = that.policies.iter().zip(&this.policies).zip(&experiment.policies).enumerate();
             let differ = |(number, ((there, now), _)): &(usize, ((&String, &String), _))| {
                 there != now && !left_out.contains(number)
@@ -209,8 +209,8 @@ impl Arguments {
             }
         } else {
             self.progress.tell(format_args!(
-                "note: the sweep is of usar {} ({}), this is usar {} ({COMMIT})",
-                manifest.version, manifest.commit, this.version
+                "note: trials of bits {}; the program has {} ({}; this is {COMMIT})",
+                that.bits, this.bits, manifest.commit
             ));
         }
         Ok(())
