@@ -35,7 +35,15 @@ const WALLS: &str = "(name: \"w\", duration_s: 9, dt_s: 0.02, arena_m: (30, 20),
 const OVER: &str = "(base: \"minimal/pushed.ron\", name: \"over\", mission: (rest_s: 10.0), roles: (heavy: \
     (speed_mps: 3.0)), debris: [])";
 
-const QUESTION: &str = r#"{"schema_version":3,"round":1,"roles":["a"],"needs":[{"name":"n","weight":1.0}],"levels":[{"name":"energy","unit":"%"},{"name":"hp","unit":"%"}],"tasks":[{"name":"x","difficulty":2,"place":[1.0,2.0]},{"name":"y","difficulty":1,"place":null}],"quotas":[{"members":[1,1],"sizes":"Parts"}],"members":[{"id":0,"role":0,"home":[0.0,0.0],"needs":[1.0],"levels":[50.0,50.0]},{"id":1,"role":0,"home":[1.0,0.0],"needs":[2.0],"levels":[60.0,null]}],"history":[],"random_seed":"0000"}"#;
+const QUESTION: &str = concat!(
+    r#"{"schema_version":3,"round":1,"roles":["a"],"needs":[{"name":"n","weight":1.0}],"#,
+    r#""levels":[{"name":"energy","unit":"%"},{"name":"hp","unit":"%"}],"#,
+    r#""tasks":[{"name":"x","difficulty":2,"place":[1.0,2.0]},{"name":"y","difficulty":1,"place":null}],"#,
+    r#""quotas":[{"members":[1,1],"sizes":"Parts"}],"#,
+    r#""members":[{"id":0,"role":0,"home":[0.0,0.0],"needs":[1.0],"levels":[50.0,50.0]},"#,
+    r#"{"id":1,"role":0,"home":[1.0,0.0],"needs":[2.0],"levels":[60.0,null]}],"#,
+    r#""history":[],"random_seed":"0000"}"#,
+);
 
 /// One change of a file, at a place of its own.
 #[derive(Debug, Clone)]

@@ -1,10 +1,10 @@
-//! The pages for people: links lead somewhere, options exist, every page is in the book, and prose can be
-//! read in a window of 110 columns.
+//! The pages for people: links lead somewhere, options exist, every page is in the book, and prose and
+//! sources can be read in a window of 110 columns.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::support::root;
+use crate::support::{root, rust_files};
 
 /// Pages whose lines may be longer: they are made of comments.
 const WIDE: [&str; 2] = ["columns.md", "scenarios-reference.md"];
@@ -98,8 +98,14 @@ fn every_page_is_in_the_book() {
 }
 
 #[test]
-fn prose_fits_a_window_of_110_columns() {
+fn prose_and_sources_fit_a_window_of_110_columns() {
     let mut wide = Vec::new();
+    let mut look = |path: &Path, number: usize, line: &str| {
+        let columns = line.chars().count();
+        if columns > 110 {
+            wide.push(format!("{}:{}: {columns} columns: {line}", path.display(), number + 1));
+        }
+    };
     for (path, page) in pages() {
         let name = path.file_name().unwrap().to_str().unwrap();
         if WIDE.contains(&name) {
@@ -107,10 +113,15 @@ fn prose_fits_a_window_of_110_columns() {
         }
         for (number, line) in prose(&page) {
             let is_prose = !line.starts_with(['|', '#', '!', '<']) && line.contains(' ');
-            let columns = line.chars().count();
-            if is_prose && columns > 110 {
-                wide.push(format!("{name}:{}: {columns} columns: {line}", number + 1));
+            if is_prose {
+                look(&path, number, line);
             }
+        }
+    }
+    // rustfmt leaves long texts, comments and tables alone.
+    for folder in ["crates", "lab", "python", "studies", "tests"] {
+        for (path, text) in rust_files(&root().join(folder)) {
+            text.lines().enumerate().for_each(|(number, line)| look(&path, number, line));
         }
     }
     assert!(wide.is_empty(), "{}", wide.join("\n"));

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::support::root;
+use crate::support::{root, rust_files};
 
 /// The crates from the bottom up, in the order of the workspace. Each may use those before it, for its tests
 /// as well.
@@ -191,21 +191,9 @@ fn dependencies_of_every_kind_are_found() {
 /// The sources of a crate: path from its `src`, and text without tests and comments.
 fn sources(name: &str) -> Vec<(PathBuf, String)> {
     let src = root().join(folder(name)).join("src");
-    let mut sources = Vec::new();
-    let mut folders = vec![src.clone()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|kind| kind == "rs") {
-                let text = std::fs::read_to_string(&path).unwrap();
-                sources.push((path.strip_prefix(&src).unwrap().to_owned(), code(&text)));
-            }
-        }
-    }
+    let source = |(path, text): (PathBuf, String)| (path.strip_prefix(&src).unwrap().to_owned(), code(&text));
+    let sources: Vec<(PathBuf, String)> = rust_files(&src).into_iter().map(source).collect();
     assert!(!sources.is_empty(), "{name} has sources");
-    sources.sort();
     sources
 }
 

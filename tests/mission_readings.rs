@@ -377,7 +377,8 @@ fn a_mission_may_have_64_tasks() {
     let task = |i: u32| {
         let [x, y] = [10 * (i % 8) + 5, 10 * (i / 8) + 15];
         format!(
-            "(name: \"t{i}\", difficulty: {i}, center: ({x}, {y}), size_m: (1, 1), grid: (1, 1), rest: ({x}, {y}))"
+            "(name: \"t{i}\", difficulty: {i}, center: ({x}, {y}), size_m: (1, 1), grid: (1, 1), \
+             rest: ({x}, {y}))"
         )
     };
     let tasks: Vec<String> = (0..64).map(task).collect();

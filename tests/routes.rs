@@ -390,7 +390,8 @@ const SEALED: &str = r#"(
     name: "sealed", duration_s: 100.0, dt_s: 0.02, arena_m: (40.0, 40.0),
     roles: [(name: "carrier", observing_m: 6.0)],
     team: [(role: "carrier", count: 4, center: (10.0, 3.0), width_m: 6.0)],
-    tasks: [(name: "north", difficulty: 1, center: (31.0, 33.5), size_m: (1.0, 1.0), grid: (2, 2), rest: (5.0, 8.0))],
+    tasks: [(name: "north", difficulty: 1, center: (31.0, 33.5), size_m: (1.0, 1.0), grid: (2, 2),
+        rest: (5.0, 8.0))],
     walls: [((22.0, 26.9), (22.0, 40.0)), ((21.9, 27.0), (40.0, 27.0))],
 )"#;
 
@@ -399,7 +400,8 @@ const WITH_CORNERS: &str = r#"(
     name: "with-corners", duration_s: 60.0, dt_s: 0.02, arena_m: (12.0, 12.0),
     roles: [(name: "carrier", radius_m: 0.25, resources: 4, observing_m: 6.0, sensing_m: 100.0)],
     team: [(role: "carrier", count: 2, center: (1.2, 0.8), width_m: 1.2)],
-    tasks: [(name: "north", difficulty: 1, center: (10.0, 10.5), size_m: (2.0, 1.0), grid: (3, 2), rest: (11.0, 1.0))],
+    tasks: [(name: "north", difficulty: 1, center: (10.0, 10.5), size_m: (2.0, 1.0), grid: (3, 2),
+        rest: (11.0, 1.0))],
     walls: [((4.0, 1.9), (4.0, 10.1)), ((1.9, 2.0), (4.1, 2.0)), ((0.0, 6.0), (4.1, 6.0))],
 )"#;
 

@@ -53,7 +53,8 @@ fn every_sweep_file_loads_and_every_mission_has_one() {
 const SMALL: &str = r#"(
     name: "s", duration_s: 10.0, dt_s: 0.02, arena_m: (10.0, 10.0),
     team: [(role: "robot", count: 1, center: (5.0, 5.0), width_m: 0.0)],
-    tasks: [(name: "t", difficulty: 1, center: (2.0, 2.0), size_m: (1.0, 1.0), grid: (1, 1), rest: (8.0, 8.0))],
+    tasks: [(name: "t", difficulty: 1, center: (2.0, 2.0), size_m: (1.0, 1.0), grid: (1, 1),
+        rest: (8.0, 8.0))],
 )"#;
 
 #[test]
@@ -107,8 +108,8 @@ fn costs_per_step_under_another_step_are_told() {
     let told = told("0.04");
     assert!(
         told.contains(
-            "costs.energy.per_step is paid in every step, here of 0.04 s, found 0.0045; in a second this is 0.500 \
-             times as much"
+            "costs.energy.per_step is paid in every step, here of 0.04 s, found 0.0045; in a second this is \
+             0.500 times as much"
         ),
         "{told}"
     );
@@ -187,9 +188,9 @@ fn a_team_without_a_guide_and_doors_too_narrow_for_all_are_told() {
 fn values_at_a_limit_pass_whatever_the_rounding() {
     let wall = |from: &str, to: &str| {
         let text = format!(
-            "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (10, 10), team: [(role: \"robot\", count: 1, center: \
-             (2, 2), width_m: 0)], errands: [(robot: 0, to: [(8, 8)])], walls: [(from: {from}, to: {to}, \
-             thickness_m: 0.1)])"
+            "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (10, 10), team: [(role: \"robot\", count: 1, \
+             center: (2, 2), width_m: 0)], errands: [(robot: 0, to: [(8, 8)])], walls: [(from: {from}, to: \
+             {to}, thickness_m: 0.1)])"
         );
         Scenario::parse(&text, Path::new("s.ron")).map(|scenario| scenario.obstacles().len())
     };
@@ -199,9 +200,9 @@ fn values_at_a_limit_pass_whatever_the_rounding() {
     let corner = |i: u32| [50.0 * (f64::from(i) * 1e-3).cos(), 50.0 * (f64::from(i) * 1e-3).sin()];
     let arc: Vec<String> = (0..60).map(corner).map(|[x, y]| format!("({x:?}, {y:?})")).collect();
     let text = format!(
-        "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (90, 20), team: [(role: \"robot\", count: 1, center: \
-         (2, 2), width_m: 0)], errands: [(robot: 0, to: [(8, 8)])], debris: [(shape: Polygon([(40.0, 1.5), {}]), \
-         at: (20, 10))])",
+        "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (90, 20), team: [(role: \"robot\", count: 1, \
+         center: (2, 2), width_m: 0)], errands: [(robot: 0, to: [(8, 8)])], debris: [(shape: Polygon([(40.0, \
+         1.5), {}]), at: (20, 10))])",
         arc.join(", ")
     );
     Scenario::parse(&text, Path::new("s.ron")).unwrap_or_else(|error| panic!("{error}"));
@@ -211,17 +212,17 @@ fn values_at_a_limit_pass_whatever_the_rounding() {
 fn errands_lead_where_a_robot_can_stand() {
     let error = |place: &str, rest: &str| {
         let text = format!(
-            "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (12, 8), team: [(role: \"robot\", count: 1, center: \
-             (2, 4), width_m: 0)], errands: [(robot: 0, to: [{place}])], debris: [(shape: Disc(1), at: (6, 4))], \
-             walls: [(from: (9, 0), to: (9, 4), thickness_m: 0.1)]{rest})"
+            "(name: \"s\", duration_s: 10, dt_s: 0.02, arena_m: (12, 8), team: [(role: \"robot\", count: 1, \
+             center: (2, 4), width_m: 0)], errands: [(robot: 0, to: [{place}])], debris: [(shape: Disc(1), \
+             at: (6, 4))], walls: [(from: (9, 0), to: (9, 4), thickness_m: 0.1)]{rest})"
         );
         Scenario::parse(&text, Path::new("s.ron")).map_or_else(|error| error.to_string(), |_| String::new())
     };
     assert_eq!(error("(4, 4)", ""), "");
     assert_eq!(
         error("(9, 2)", ""),
-        "s.ron:1: errands[0].to[0] must be at least planning.clearance_m (0.15 m) from walls[0], found a place \
-         inside it"
+        "s.ron:1: errands[0].to[0] must be at least planning.clearance_m (0.15 m) from walls[0], found a \
+         place inside it"
     );
     assert!(error("(12, 4)", "").contains("from the wall of the arena, found a place inside it"));
     assert!(error("(6, 3.5)", "").contains("from debris[0], found a place inside it"));

@@ -58,3 +58,18 @@ pub fn lies(piece: usize, outline: &Outline, at_step: u64) -> Report {
     let says = Statement::DebrisLies { debris: piece as u32, shape, pose };
     Report { from: Speaker::Robot(RobotId(0)), says, at_step, sd_m: 0.0 }
 }
+
+/// The Rust files below a folder with their texts, without what was built.
+pub fn rust_files(folder: &Path) -> Vec<(PathBuf, String)> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() && !path.ends_with("target") {
+            files.extend(rust_files(&path));
+        } else if path.extension().is_some_and(|kind| kind == "rs") {
+            files.push((path.clone(), std::fs::read_to_string(path).unwrap()));
+        }
+    }
+    files.sort();
+    files
+}

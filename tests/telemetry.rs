@@ -100,7 +100,8 @@ fn under_dis_a_lie_about_oneself_changes_evidence_and_events_only() {
 fn no_policy_sees_the_truth() {
     let text = |energy: f64| {
         format!(
-            "timeline: [(at_s: 0, event: RobotDrops(5)), (at_s: 100, event: RobotLoses(robot: 5, energy: {energy}))],"
+            "timeline: [(at_s: 0, event: RobotDrops(5)), \
+             (at_s: 100, event: RobotLoses(robot: 5, energy: {energy}))],"
         )
     };
     let questions = |energy: f64| -> Vec<Question> {
@@ -138,7 +139,8 @@ fn a_record_gives_each_question_back_with_its_evidence() {
     let scenario = paper_and(
         "reports: (every_s: 5, sensors: {\"supplier\": (hp: (sd: 3, dropout: 0.1))}),
     medium: (range_m: 60, loss: GilbertElliott(p: 0.02, r: 0.25, good: 0, bad: 1), delay_s: 0.2, kbps: 50),
-    deceit: [(who: Share(0.25), lie: Understate(by: 0.3), on: [Hp]), (who: Robots([1]), lie: Whitewash(at_rest: true))],",
+    deceit: [(who: Share(0.25), lie: Understate(by: 0.3), on: [Hp]),
+        (who: Robots([1]), lie: Whitewash(at_rest: true))],",
     );
     let mut trial = Simulation::new(&scenario, 4).unwrap();
     let mut rne = policy("RNE");
@@ -240,8 +242,8 @@ fn robots_go_for_phantoms_and_do_not_know_of_hidden_radiation() {
     assert!(hidden.0 < honest.0 && hidden.0 > 0, "{honest:?} {hidden:?}");
 }
 
-/// `Truth` takes the levels of the members as they really were, which the record keeps beside each decision, and
-/// bodies say what needs follow from them: together they are these members.
+/// `Truth` takes the levels of the members as they really were, which the record keeps beside each decision,
+/// and bodies say what needs follow from them: together they are these members.
 #[test]
 fn the_control_has_the_levels_and_needs_of_the_truth() {
     let scenario = paper_and(

@@ -37,7 +37,8 @@ impl Texts {
         };
         let own = (name == plain(Path::new(&self.name))).then(|| self.text.clone());
         let text = own.or_else(|| self.others.get(&name).cloned()).ok_or_else(missing)?;
-        parse_tree(&text, Path::new(&name))?; // all texts of the page are the reader's own: where it breaks is told
+        // All texts of the page are the reader's own: where it breaks is told.
+        parse_tree(&text, Path::new(&name))?;
         Ok(text)
     }
 }

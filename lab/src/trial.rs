@@ -226,8 +226,8 @@ fn assignment(text: &str) -> Result<Assignment, String> {
     let bad = |error: serde_json::Error| {
         let start: String = text.chars().take(200).collect();
         format!(
-            "the answer must be one list of robots' ids for each task, as in [[0, 2], [1, 3]], or {{\"groups\": \
-             .., \"idle\": ..}}: {error}; found {start}"
+            "the answer must be one list of robots' ids for each task, as in [[0, 2], [1, 3]], or \
+             {{\"groups\": .., \"idle\": ..}}: {error}; found {start}"
         )
     };
     if text.trim_start().starts_with('[') {

@@ -322,8 +322,8 @@ mod tests {
             [
                 "1: column 2 has no name",
                 "2: must have a cell for each of the 2 columns, found 1",
-                "3: must have a cell for each of the 2 columns, found 3; numbers with decimal commas need `;` \
-                 between cells"
+                "3: must have a cell for each of the 2 columns, found 3; numbers with decimal commas need \
+                 `;` between cells"
             ]
         );
         let error = read(&format!("a,b\n{}", "1\n".repeat(30))).unwrap_err().to_string();

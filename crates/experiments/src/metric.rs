@@ -50,12 +50,15 @@ const RATIO: &str = "points per rescuee";
 /// All metrics.
 #[rustfmt::skip]
 const DECLARATIONS: &[Declaration] = &[
-    per_task("rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued))).primary().in_figure("rescuees").higher()
+    per_task("rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued)))
+        .primary().in_figure("rescuees").higher()
         .means("Rescuees delivered home or to a rest place."),
-    per_task("energy_per_rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued)).primary().of_sums("energy").in_figure("energy per rescuee").lower()
+    per_task("energy_per_rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued))
+        .primary().of_sums("energy").in_figure("energy per rescuee").lower()
         .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total \
             includes what robots spent outside groups."),
-    per_task("hp_per_rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued)).primary().of_sums("hp").in_figure("HP per rescuee").lower()
+    per_task("hp_per_rescuee", RATIO, |r| ratio(r.hp(), r.rescued()), |t| ratio(t.hp, t.rescued))
+        .primary().of_sums("hp").in_figure("HP per rescuee").lower()
         .means("HP lost, divided by the rescuees delivered; empty where nobody was rescued. The total \
             includes what robots lost outside groups."),
     whole("rounds", "", |r| Some(f64::from(r.completed_rounds))).primary().higher()
@@ -67,8 +70,8 @@ const DECLARATIONS: &[Declaration] = &[
     whole("longest_stall", "s", |r| Some(r.longest_stall_s())).in_figure("waiting and deadlocks").lower()
         .means("The longest time in which one robot with a goal came no nearer to it, over all robots."),
     whole("stalled", "", |r| Some(f64::from(r.stalled))).lower()
-        .means("Robots that stood at the end: they could act, had something to do, and had come no nearer to it \
-            for `mission.cut_off_s`, or were cut off."),
+        .means("Robots that stood at the end: they could act, had something to do, and had come no nearer to \
+            it for `mission.cut_off_s`, or were cut off."),
     whole("conflicts", "", |r| Some(f64::from(r.counts.conflicts)))
         .means("Conflict sets that began: robots whose wishes would have brought them too near to one \
             another."),
@@ -113,25 +116,26 @@ const OF_REPORTS: &[Declaration] = &[
     whole("liars", "", belief::liars)
         .means("Robots that told a lie, sooner or later."),
     whole("level_mae", "%", belief::level_mae).lower()
-        .means("How far energy and health as they were believed are from the truth, on average over members and \
-            decisions: by the estimator of the policy, or else as said last."),
+        .means("How far energy and health as they were believed are from the truth, on average over members \
+            and decisions: by the estimator of the policy, or else as said last."),
     whole("level_crps", "%", belief::level_crps).lower()
         .means("The continuous ranked probability score of the same levels, with their standard deviations."),
     whole("tau_b", "", belief::rank_agreement).higher()
-        .means("Kendall's rank correlation (tau-b) of believed and true levels of the members, on average over \
-            levels and decisions."),
+        .means("Kendall's rank correlation (tau-b) of believed and true levels of the members, on average \
+            over levels and decisions."),
     whole("trust_auc", "", belief::trust_auc).higher()
-        .means("How often an honest robot has more trust than a liar, ties by half; empty without an estimator, \
-            liars or honest robots."),
+        .means("How often an honest robot has more trust than a liar, ties by half; empty without an \
+            estimator, liars or honest robots."),
     whole("trust_brier", "", belief::trust_brier).lower()
-        .means("The Brier score of trust as the probability that a robot is honest; empty without an estimator."),
+        .means("The Brier score of trust as the probability that a robot is honest; empty without an \
+            estimator."),
     whole("trust_log", "nats", belief::trust_log).lower()
         .means("The logarithmic score of the same."),
     whole("trust_ece", "", belief::trust_ece).lower()
         .means("The expected calibration error of the same, in ten bins."),
     whole("rounds_to_detect", "", belief::rounds_to_detect).lower()
-        .means("Rounds from the first in which a robot lies until its trust falls below 0.5, on average over liars. \
-            One that is never detected counts with all of these: the mean is censored there."),
+        .means("Rounds from the first in which a robot lies until its trust falls below 0.5, on average over \
+            liars. One that is never detected counts with all of these: the mean is censored there."),
     whole("false_exclusions", "", belief::false_exclusions).lower()
         .means("How often an honest robot was left at home by a policy with an estimator."),
 ];

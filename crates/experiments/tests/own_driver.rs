@@ -13,7 +13,7 @@ use teaming::{
     Asked, Basis, Decision, Driver, MadePolicy, PolicyError, PolicyKind, Registry, Session, TrialStart,
 };
 
-/// Options: who answers in truth, whether that is said, and whether it declares to need the truth and the trial.
+/// Options: who answers in truth, whether that is said, and whether it declares to need truth and trial.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Options {

@@ -87,8 +87,8 @@ fn a_folder_with_a_policy_of_ones_own_can_be_read_by_a_program_without_it() {
     let odd: Vec<String> = odd_sizes(&mut stranger).unwrap().iter().map(ToString::to_string).collect();
     assert_eq!(odd.len(), 3, "all but DIS: {odd:?}");
     let says = "LAZY does not keep the sizes that groups should have in 2 of 2 trials, which \
-                `mission.group_sizes: Free` allows (first in trial 1, round 1: role \"carrier\" must be split \
-                into parts of [3, 3] members, found [0, 6])";
+                `mission.group_sizes: Free` allows (first in trial 1, round 1: role \"carrier\" must be \
+                split into parts of [3, 3] members, found [0, 6])";
     assert!(odd[0].starts_with(says), "{odd:?}");
     let of_stranger = stranger.experiment();
     for key in experiment.keys(None) {

@@ -90,7 +90,8 @@ fn options_have_defaults_and_wrong_ones_are_refused_with_those_that_there_are() 
     let refused = |text| registry.parse(text).unwrap_err().to_string();
     assert_eq!(
         refused(r#"SPEED(speed: "v")"#),
-        "policy SPEED: speed is no field, found \"(speed: \\\"v\\\")\"; did you mean need? There are need; options and defaults: (need: \"v\")"
+        "policy SPEED: speed is no field, found \"(speed: \\\"v\\\")\"; did you mean need? There are need; \
+         options and defaults: (need: \"v\")"
     );
     assert_eq!(
         refused(r#"SPEED(need: "")"#),

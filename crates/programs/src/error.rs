@@ -71,7 +71,8 @@ pub(crate) enum Complaint {
     Type { found: String, expected: &'static str },
     #[error("its hello speaks protocol {0}; this program speaks protocol {PROTOCOL}")]
     Protocol(String),
-    #[error("its hello has schema_version {0}; this program has questions of version {SCHEMA_VERSION}{since}", since = since(.0))]
+    #[error("its hello has schema_version {0}; this program has questions of version {SCHEMA_VERSION}{since}",
+        since = since(.0))]
     Schema(String),
     #[error("{field} of its hello must be {rule}, found {found}")]
     Hello { field: &'static str, rule: &'static str, found: String },

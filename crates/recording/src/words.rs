@@ -214,7 +214,10 @@ mod tests {
         let told = ToldEvent::new(125, 0.02, &event, Names::default());
         assert_eq!((told.time_s, told.event.as_str(), told.robots()), (2.5, "made_room", vec![3, 1]));
         let line = serde_json::to_string(&told).unwrap();
-        let expected = r#"{"time_s":2.5,"step":125,"event":"made_room","says":"robot 3 makes room for robot 1","robot":3,"room_for":1}"#;
+        let expected = concat!(
+            r#"{"time_s":2.5,"step":125,"event":"made_room","says":"robot 3 makes room for robot 1","#,
+            r#""robot":3,"room_for":1}"#
+        );
         assert_eq!(line, expected);
         let returned = Event::GroupReturned { task: TaskId(0), cause: ReturnCause::NothingLeft };
         let told = ToldEvent::new(1, 1.0, &returned, Names { tasks: &["north"], ..Names::default() });

@@ -313,8 +313,8 @@ mod tests {
         name: "t", duration_s: 60, dt_s: 0.02, arena_m: (40, 40),
         team: [(role: "robot", count: Uniform(2, 4), center: (20, 5), width_m: 6,
             levels: (energy: Uniform(50, 60), hp: 90.0), body: (speed_mps: Truncated(Normal(2, 0.5), 1, 3)))],
-        tasks: [(name: "a", difficulty: 1, center: (Uniform(10, 30), 30), size_m: (2, 2), grid: (2, 2), rest: (20, 12))],
-        debris: [(shape: Choice([Disc(0.5), Box(1.0, 2.0)]), at: (20, 20))],
+        tasks: [(name: "a", difficulty: 1, center: (Uniform(10, 30), 30), size_m: (2, 2), grid: (2, 2),
+            rest: (20, 12))], debris: [(shape: Choice([Disc(0.5), Box(1.0, 2.0)]), at: (20, 20))],
         radiation: [(at: (8, 20), radius_m: Uniform(1, 3))],
     )"#;
 

@@ -143,8 +143,8 @@ pub enum LayoutError {
     },
     /// Debris and walls leave no way for a ground robot.
     #[error(
-        "walls and debris leave no way from home to {to} that is wide enough for a robot of radius {radius_m} \
-         m with clearance"
+        "walls and debris leave no way from home to {to} that is wide enough for a robot of radius \
+         {radius_m} m with clearance"
     )]
     NoPassage {
         /// Where to.

@@ -122,8 +122,8 @@ mod tests {
     #[test]
     fn a_name_gives_way_to_its_value_and_nothing_else_changes() {
         let mut root = tree(
-            "(values: (far: (1, 2), low: 0.5), // names\n name: \"far\", at: far, x: [low, low_ , far],\n far: \
-             Disc(low))",
+            "(values: (far: (1, 2), low: 0.5), // names\n name: \"far\", at: far, x: [low, low_ , far],\n \
+             far: Disc(low))",
         );
         let (names, problems) = take_out(&mut root);
         assert_eq!(problems, []);

@@ -291,8 +291,8 @@ fn leaves_room(check: &mut Checker, file: &ScenarioFile) {
     let taken = 2.0 * (largest + file.planning.clearance_m);
     if taken >= side && limits::ROBOT_RADIUS_M.range().contains(&largest) {
         let rule = format!(
-            "must leave room in the arena of {side} m: with the radius of the largest robot ({largest} m), less \
-             than half of it"
+            "must leave room in the arena of {side} m: with the radius of the largest robot ({largest} m), \
+             less than half of it"
         );
         check.fail("planning.clearance_m", rule, file.planning.clearance_m);
     }

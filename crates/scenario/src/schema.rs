@@ -32,8 +32,11 @@ impl JsonSchema for ResolverRule {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let rule = generator.subschema_for::<RightOfWay>();
-        let with_values = |name: &str, description: &str| json!({"description": description, "type": "object", "properties": {name: rule}, "required": [name], "additionalProperties": false});
-        let plain = |name: &str, description: &str| json!({"description": description, "type": "string", "const": name});
+        let with_values = |name: &str, says: &str| {
+            json!({"description": says, "type": "object", "properties": {name: rule}, "required": [name],
+                "additionalProperties": false})
+        };
+        let plain = |name: &str, says: &str| json!({"description": says, "type": "string", "const": name});
         json_schema!({
             "description": "What resolves conflicts and deadlocks.",
             "oneOf": [
@@ -64,17 +67,12 @@ impl JsonSchema for WallFile {
                 without it), and `doors`, a list of Door.",
             "anyOf": [
                 {"type": "array", "items": point, "minItems": 2, "maxItems": 2},
-                {
-                    "type": "object",
-                    "properties": {
-                        "from": {"description": "Where its middle line begins.", "allOf": [point]},
-                        "to": {"description": "Where its middle line ends.", "allOf": [point]},
-                        "thickness_m": {"description": "Thickness, in metres.", "type": "number", "default": 0.2},
-                        "doors": {"description": "Its doors, which are gaps.", "allOf": [doors], "default": []},
-                    },
-                    "required": ["from", "to"],
-                    "additionalProperties": false,
-                },
+                {"type": "object", "properties": {
+                    "from": {"description": "Where its middle line begins.", "allOf": [point]},
+                    "to": {"description": "Where its middle line ends.", "allOf": [point]},
+                    "thickness_m": {"description": "Thickness, in metres.", "type": "number", "default": 0.2},
+                    "doors": {"description": "Its doors, which are gaps.", "allOf": [doors], "default": []},
+                }, "required": ["from", "to"], "additionalProperties": false},
             ],
         })
     }

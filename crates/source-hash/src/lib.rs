@@ -93,7 +93,7 @@ fn write(tokens: TokenStream, code: &mut String, tests: &mut Vec<String>) {
 
 /// The attribute at the start of these tokens: its number of tokens, and its text.
 fn attribute(tokens: &[TokenTree]) -> Option<(usize, String)> {
-    let is = |at: usize, sign: char| matches!(tokens.get(at), Some(TokenTree::Punct(found)) if found.as_char() == sign);
+    let is = |at: usize, sign| matches!(tokens.get(at), Some(TokenTree::Punct(it)) if it.as_char() == sign);
     let place = 1 + usize::from(is(1, '!'));
     match tokens.get(place) {
         Some(TokenTree::Group(group)) if is(0, '#') && group.delimiter() == Delimiter::Bracket => {

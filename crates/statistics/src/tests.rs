@@ -77,7 +77,8 @@ fn the_plain_interval_is_scipys() {
         (PLANTS.as_slice(), [-1.666_666_7, 36.333_333_3], 0.5),
         (&ALL_POSITIVE, [7.1, 13.5], 0.11),
         (&MIXED, [0.25, 2.0625], 0.05),
-        (&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.5], 0.11), // many resamples tie with the mean
+        // Many resamples tie with the mean.
+        (&[0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.5], 0.11),
     ] {
         let interval = bca_interval(differences, 0.95, 100_000, 1, Width::Plain).unwrap();
         assert!(

@@ -60,7 +60,7 @@ pub struct Question {
     /// Seed of the policy's own draws in this round.
     pub random_seed: RandomSeed,
     /// What the base heard of the robots, where reports may be late, lost, wrong or lies; absent where
-    /// everybody knows how every robot is. The state of a trial has it elsewhere, so that it is in texts only.
+    /// everybody knows how every robot is. The state of a trial has it elsewhere: it is in texts only.
     #[serde(default, deserialize_with = "evidence_of_text")]
     pub evidence: Option<Evidence>,
 }

@@ -8,7 +8,8 @@ pub const SCHEMA_VERSION: u32 = 3;
 pub fn since(found: &str) -> &'static str {
     match found {
         "2" => {
-            "; since version 3, levels stand in lists with a table of their names, and no question has the truth"
+            "; since version 3, levels stand in lists with a table of their names, and no question has the \
+             truth"
         }
         _ => "",
     }

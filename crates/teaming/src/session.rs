@@ -125,7 +125,7 @@ pub struct Asked<'a> {
     pub deadline: Deadline<'a>,
     /// What is true, for drivers that [need the truth](Driver::needs_truth). Nobody else gets it.
     pub truth: Option<Truth<'a>>,
-    /// The running trial, for drivers that [need it](Driver::needs_trial), to play it on. Nobody else gets it.
+    /// The running trial, for drivers that [need it](Driver::needs_trial), to play it on. No other gets it.
     pub trial: Option<&'a dyn Any>,
 }
 

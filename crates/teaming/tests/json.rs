@@ -3,13 +3,13 @@
 
 use teaming::{Assignment, AssignmentError, Decision, Question, QuestionError, Task};
 
-const BEFORE_LEVELS: &str = "schema_version must be 3, found 2; since version 3, levels stand in lists with a table of \
-    their names, and no question has the truth";
+const BEFORE_LEVELS: &str = "schema_version must be 3, found 2; since version 3, levels stand in lists with \
+    a table of their names, and no question has the truth";
 
 const TEAM: &str = r#"{
   "schema_version": 3, "round": 2,
-  "roles": ["carrier", "observer"],
-  "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 0.5}], "levels": [{"name": "energy", "unit": "%"}, {"name": "hp", "unit": "%"}],
+  "roles": ["carrier", "observer"], "needs": [{"name": "hp", "weight": 1.0}, {"name": "v", "weight": 0.5}],
+  "levels": [{"name": "energy", "unit": "%"}, {"name": "hp", "unit": "%"}],
   "tasks": [
     {"name": "easy", "difficulty": 1, "place": [70.0, 50.0]},
     {"name": "hard", "difficulty": 2, "place": [15.0, 60.0]}],
@@ -92,14 +92,18 @@ fn what_is_no_decision_is_refused() {
 fn what_is_no_question_is_refused_with_the_reason() {
     let not_json = |reason: &str| format!("not the JSON of a question: {reason}");
     for (from, to, message) in [
-        ("\"schema_version\": 3", "\"schema_version\": 7", not_json("schema_version must be 3, found 7 at line 2 column 21")),
+        (
+            "\"schema_version\": 3",
+            "\"schema_version\": 7",
+            not_json("schema_version must be 3, found 7 at line 2 column 21"),
+        ),
         (
             "\"round\": 2",
             "\"turn\": 2",
             not_json(
                 "unknown field `turn`, expected one of `schema_version`, `round`, `asker`, `roles`, `needs`, \
-                 `levels`, `rest`, `tasks`, `quotas`, `members`, `may_idle`, `history`, `random_seed`, `evidence` \
-                 at line 2 column 29",
+                 `levels`, `rest`, `tasks`, `quotas`, `members`, `may_idle`, `history`, `random_seed`, \
+                 `evidence` at line 2 column 29",
             ),
         ),
         (
@@ -167,8 +171,9 @@ fn what_is_no_question_is_refused_with_the_reason() {
         (
             "\"hp\", \"unit\": \"%\"",
             "\"hp\", \"unit\": \"J\"",
-            "a level must have the unit \"%\" and finite numbers, found Level { name: \"hp\", unit: \"J\", threshold: 0.0, \
-             expected: None }".to_owned(),
+            "a level must have the unit \"%\" and finite numbers, found Level { name: \"hp\", unit: \"J\", \
+             threshold: 0.0, expected: None }"
+                .to_owned(),
         ),
         ("[33.3, 90.1]", "[33.3]", "robot 4: levels must have 2 entries, found 1".to_owned()),
         (

@@ -24,7 +24,8 @@ pub(crate) fn check_kind(flag: &str, ending: &str) -> Result<(), Failure> {
     if !is_there {
         let kind = if ending == "parquet" { "Parquet".to_owned() } else { ending.to_uppercase() };
         refuse!(
-            "{flag}: this build writes no {kind} ({instead}): cargo install --locked --path crates/usar --features full"
+            "{flag}: this build writes no {kind} ({instead}): cargo install --locked --path crates/usar \
+             --features full"
         );
     }
     Ok(())

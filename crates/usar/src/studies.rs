@@ -86,8 +86,8 @@ fn run(file: &Path, name: &str, words: &[OsString]) -> Result<u8, Failure> {
     let source = String::from_utf8_lossy(&source.stdout);
     if source.trim() != SOURCE {
         refuse!(
-            "{}: was built from other sources than this program, and would give other numbers: build both from \
-             one commit (cargo install --locked --path studies/{name})",
+            "{}: was built from other sources than this program, and would give other numbers: build both \
+             from one commit (cargo install --locked --path studies/{name})",
             file.display()
         );
     }

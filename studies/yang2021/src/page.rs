@@ -108,8 +108,8 @@ fn footnote(judged: &[Judged]) -> String {
          its comparisons together). It\n\
          holds or is within the margin when each of its comparisons holds, or differs by less than the \
          margin of paper.sweep.ron (90 % interval):\n\
-         of a claim to be the best, the best or within 5 of the best. Else it is undecided. Each verdict is wrong in about 2.5 % of experiments at most; the {} claims are not \
-         corrected for one another.\n\
+         of a claim to be the best, the best or within 5 of the best. Else it is undecided. Each verdict is \
+         wrong in about 2.5 % of experiments at most; the {} claims are not corrected for one another.\n\
          studies/yang2021/docs/reproduction.md discusses them.",
             CLAIMS.len()
         )

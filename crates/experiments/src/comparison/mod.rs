@@ -107,7 +107,8 @@ pub(crate) fn policy_pairs(experiment: &Experiment, choice: Choice) -> Result<Ve
         }
         let only = &experiment.policies[only].label;
         refuse!(
-            "there is nothing to compare: {only} only; the sweep with `--policies {only},...` adds others to it"
+            "there is nothing to compare: {only} only; the sweep with `--policies {only},...` adds others to \
+             it"
         );
     }
     let pairs = |(i, a): (usize, &usize)| chosen[i + 1..].iter().map(|b| [*a, *b]).collect::<Vec<_>>();

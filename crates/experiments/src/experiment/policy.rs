@@ -260,7 +260,8 @@ mod tests {
         is("RNE <- Kalman | Discount(by: 2)", "Discount has no options, found \"(by: 2)\"");
         is(
             "ORACLE <- Kalman",
-            "policy ORACLE: it plays the running trial on and looks at no report; leave out what is behind `<-`",
+            "policy ORACLE: it plays the running trial on and looks at no report; leave out what is behind \
+             `<-`",
         );
         assert!(refused("RNE <- Both(lvl: Kalman)").contains("lvl is no field"));
         assert!(refused("RNE <- Both(level: Kalmann)").contains("level: unknown estimator \"Kalmann\""));

@@ -77,8 +77,8 @@ mod tests {
         assert_eq!(doubt("RNE <- Wmsr(f: 2)"), None, "6 members are 5 raters");
         assert_eq!(
             doubt("RNE <- Both(level: Wmsr(f: 3))").unwrap(),
-            "RNE <- Both(level: Wmsr(f: 3)): the estimator needs 7 raters of each robot, and a group of paper may \
-             have 6 members: 5 raters"
+            "RNE <- Both(level: Wmsr(f: 3)): the estimator needs 7 raters of each robot, and a group of \
+             paper may have 6 members: 5 raters"
         );
         assert_eq!(doubt("RNE <- Kalman"), None);
     }

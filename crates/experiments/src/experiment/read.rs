@@ -31,7 +31,8 @@ pub fn with_settings(scenario: &Scenario, settings: &[String]) -> Result<Scenari
         let path = path.trim();
         if !decides(path) {
             refuse!(
-                "--set: {path}: decides no number of a trial; --policies, --trials and --first-seed say what is run"
+                "--set: {path}: decides no number of a trial; --policies, --trials and --first-seed say what \
+                 is run"
             );
         }
         file.set(path, value).map_err(Failure::input_at("--set"))?;

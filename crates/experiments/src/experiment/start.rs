@@ -88,6 +88,7 @@ fn differing(answers: &[Assignment; 2]) -> String {
     format!(
         "it is no function of its question: asked the first question in two sessions, it answers {first} and \
          {second}. A policy may use nothing but the question: no clock, no random numbers of its own, no \
-         order of a hash table. A program for which that cannot be writes \"deterministic\": false in its hello"
+         order of a hash table. A program for which that cannot be writes \"deterministic\": false in its \
+         hello"
     )
 }

@@ -25,11 +25,16 @@ const RATIO: &str = "points per rescuee";
 
 #[rustfmt::skip]
 const QUANTITIES: [Quantity; 7] = [
-    Quantity { name: "rescuees", title: "rescuees", unit: "", is_cost: false, value: |t, _| Some(f64::from(t.rescued)) },
-    Quantity { name: "rescue_rate", title: "rescuees per minute", unit: "1/min", is_cost: false, value: rate },
-    Quantity { name: "energy_per_rescuee", title: "energy per rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.energy, t.rescued) },
-    Quantity { name: "hp_per_rescuee", title: "HP per rescuee", unit: RATIO, is_cost: true, value: |t, _| ratio(t.hp, t.rescued) },
-    Quantity { name: "energy", title: "energy spent", unit: POINTS, is_cost: true, value: |t, _| Some(t.energy) },
+    Quantity { name: "rescuees", title: "rescuees", unit: "", is_cost: false,
+        value: |t, _| Some(f64::from(t.rescued)) },
+    Quantity { name: "rescue_rate", title: "rescuees per minute", unit: "1/min", is_cost: false,
+        value: rate },
+    Quantity { name: "energy_per_rescuee", title: "energy per rescuee", unit: RATIO, is_cost: true,
+        value: |t, _| ratio(t.energy, t.rescued) },
+    Quantity { name: "hp_per_rescuee", title: "HP per rescuee", unit: RATIO, is_cost: true,
+        value: |t, _| ratio(t.hp, t.rescued) },
+    Quantity { name: "energy", title: "energy spent", unit: POINTS, is_cost: true,
+        value: |t, _| Some(t.energy) },
     Quantity { name: "hp", title: "HP lost", unit: POINTS, is_cost: true, value: |t, _| Some(t.hp) },
     Quantity { name: "time", title: "time", unit: "s", is_cost: true, value: |_, seconds| Some(seconds) },
 ];

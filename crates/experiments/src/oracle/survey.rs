@@ -188,7 +188,8 @@ mod tests {
         let member = |id| json!({"id": id, "role": 0, "home": [0, 0], "needs": [1]});
         let task = |name| json!({"name": name, "difficulty": 1});
         let text = json!({
-            "schema_version": 3, "round": 1, "roles": ["walker"], "needs": [{"name": "constant", "weight": 1}],
+            "schema_version": 3, "round": 1, "roles": ["walker"],
+            "needs": [{"name": "constant", "weight": 1}],
             "tasks": [task("far"), task("near")], "members": (0..robots).map(member).collect::<Vec<_>>(),
             "quotas": [{"members": [robots / 2, robots / 2], "sizes": "Parts"}],
             "history": [], "random_seed": "00".repeat(32),

@@ -27,8 +27,8 @@ impl fmt::Display for OddSizes {
         write!(
             f,
             "{policy} does not keep the sizes that groups should have in {trials} of {of} trials, which \
-             `mission.group_sizes: Free` allows (first in trial {trial}, round {round}: {error}), so that its \
-             differences are of group sizes, too."
+             `mission.group_sizes: Free` allows (first in trial {trial}, round {round}: {error}), so that \
+             its differences are of group sizes, too."
         )
     }
 }

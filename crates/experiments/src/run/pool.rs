@@ -320,7 +320,8 @@ mod tests {
         assert_eq!(reasons.len(), 5);
         assert_eq!(
             reasons[1],
-            "trial 2 of FAKE (seed 1) timed out: it took longer than 0.3 s: it did not stop when it was told to"
+            "trial 2 of FAKE (seed 1) timed out: it took longer than 0.3 s: it did not stop when it was told \
+             to"
         );
         assert_eq!(reasons[4], "trial 5 of FAKE (seed 4) failed: done");
     }

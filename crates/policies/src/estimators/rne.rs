@@ -126,7 +126,7 @@ fn looks(question: &Question, evidence: &Evidence) -> Vec<(usize, Look)> {
     looks
 }
 
-/// The place of energy in lists of levels, with what a robot said to have after a round and what it should have.
+/// The place of energy in lists of levels, with what a robot said to have after a round and what it should.
 fn energy_look(said: &SaidRounds<'_>, used: &Used, round: u32) -> Option<(usize, [f64; 2])> {
     let (energy, threshold) = said.energy()?;
     let entry = said.entry(used.robot, round)?;

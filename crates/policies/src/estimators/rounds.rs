@@ -13,7 +13,7 @@ pub(super) struct Seen<'e> {
     /// then.
     pub(super) said: Option<Said<'e>>,
     /// The median of what its fit group-mates said that they spent of each level in the round before, in
-    /// percent points; empty where nobody can tell, as in the first round and for a robot that stayed at home.
+    /// percent points; empty where nobody can tell, as in the first round and for a robot that stayed home.
     pub(super) used: Vec<f64>,
     /// Whether it rested since the question before.
     pub(super) rested: bool,

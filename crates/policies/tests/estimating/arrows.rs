@@ -139,8 +139,8 @@ fn excluding_needs_a_question_that_allows_idle_robots() {
     assert!(matches!(error, PolicyError::MayNotIdle { .. }));
     assert_eq!(
         error.to_string(),
-        "HP_DIS <- Cusum | Exclude(below: 0.3, most: 0.34) leaves robots idle, which this question does not allow; \
-         set mission.may_idle: true"
+        "HP_DIS <- Cusum | Exclude(below: 0.3, most: 0.34) leaves robots idle, which this question does not \
+         allow; set mission.may_idle: true"
     );
     decide("HP_DIS <- Cusum | Discount", &question);
     let plain = Question { evidence: None, ..question };

@@ -15,7 +15,8 @@ fn the_score_of_an_assignment_is_that_of_the_decision() {
             let question = question(drawn_team(&[4, 3], seed), &[1, 2]);
             let decision = rne.decide(&question).unwrap();
             let score = rne.score(&question, &decision.assignment).unwrap();
-            assert!((nats(score) - nats(decision.score)).abs() < 1e-12, "{rne:?}"); // added up in another order
+            // The decision has them added up in another order.
+            assert!((nats(score) - nats(decision.score)).abs() < 1e-12, "{rne:?}");
         }
     }
 }

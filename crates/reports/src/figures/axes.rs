@@ -53,8 +53,9 @@ fn difference_maps_of([down, across]: [&Axis; 2], comparisons: &[Comparison]) ->
         name: format!("differences-{}", metric.replace('.', "-")),
         title: format!("Differences in {metric}"),
         caption: format!(
-            "Mean difference of each pair of policies in {metric} at each pair of values: blue where the first \
-             is above, orange where it is below, in one scale. The table says which differences are shown."
+            "Mean difference of each pair of policies in {metric} at each pair of values: blue where the \
+             first is above, orange where it is below, in one scale. The table says which differences are \
+             shown."
         ),
         drawing: Drawing::new(panels, 3, [400.0, 300.0]),
         csv: tables::csv(["pair", &down.path, &across.path, "difference", "verdict"], rows)?,

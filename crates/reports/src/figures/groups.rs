@@ -47,8 +47,8 @@ pub(super) fn trust(experiment: &Experiment, gathered: &[Gathered]) -> Result<Op
             "{name} from each robot to each other of its role when the first round of trial {} under {} was \
              grouped, in thousandths of its unit ({unit}); lower is more trust. It is infinite wherever one \
              robot does not trust the other at all, as where it lacks a need that the other has: such cells \
-             have the darkest colour, beyond the scale, no cell of that role has its number, and the table says \
-             so. The table has all pairs, those \
+             have the darkest colour, beyond the scale, no cell of that role has its number, and the table \
+             says so. The table has all pairs, those \
              between roles too. n = 1 trial.",
             gathered.first_trial, policy.label
         ),

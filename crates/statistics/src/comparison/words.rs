@@ -82,8 +82,8 @@ fn power_in_words(comparison: &Comparison) -> String {
             )
         } else {
             format!(
-                " In one uncorrected test, these pairs have 80 % power to detect a difference as large as the \
-                 margin of {margin}."
+                " In one uncorrected test, these pairs have 80 % power to detect a difference as large as \
+                 the margin of {margin}."
             )
         };
     }

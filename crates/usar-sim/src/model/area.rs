@@ -51,7 +51,8 @@ impl TaskArea {
             |place: Vector| place.cmplt(Vector::ZERO).any() || place.cmpgt(vector(scenario.arena_m)).any();
         let last = |area: &Self| area.muster(robots.saturating_sub(1));
         if is_outside(last(&area)) {
-            area.least_in_row = robots.isqrt(); // as many as there are rows: before a small block, they lead far
+            // As many as there are rows: before a small block, they lead far.
+            area.least_in_row = robots.isqrt();
         }
         let last = last(&area);
         let beyond = (last - last.clamp(area.block_min, area.block_max)).abs().max_element();

@@ -66,7 +66,8 @@ fn a_piece_is_pushed_by_more_than_its_friction_only() {
     };
     let limit = 0.5 * 20.0 * GRAVITY;
     assert!(way_pushed_by(0.9 * limit) < 0.01);
-    let expected = 0.5 * (0.5 * limit / 20.0) * 2.0 * 2.0; // half the limit is left to accelerate 20 kg for 2 s
+    // Half the limit is left to accelerate 20 kg for 2 s.
+    let expected = 0.5 * (0.5 * limit / 20.0) * 2.0 * 2.0;
     let way = way_pushed_by(1.5 * limit);
     assert!((way - expected).abs() < 0.05 * expected, "{way} m, not {expected} m");
 }

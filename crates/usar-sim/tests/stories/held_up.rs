@@ -63,7 +63,8 @@ fn an_errand_is_given_up_by_a_robot_that_comes_no_nearer() {
             (role: "keeper", count: 1, center: (10.0, 5.0), width_m: 0.0),
         ],
         errands: [(robot: 0, to: [(17.0, 5.0), (3.0, 5.0)])],
-        walls: [(from: (10.0, 0.0), to: (10.0, 10.0), thickness_m: 0.3, doors: [(at_m: 5.0, width_m: 1.3)])]"#;
+        walls: [(from: (10.0, 0.0), to: (10.0, 10.0), thickness_m: 0.3,
+            doors: [(at_m: 5.0, width_m: 1.3)])]"#;
     let record = trial(&scenario(keeper), |_, _, _| {});
     let counts = record.counts;
     assert_eq!((record.status, record.stalled), (Status::Finished, 0), "it went on to its second place");

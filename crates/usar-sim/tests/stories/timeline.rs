@@ -41,7 +41,8 @@ fn when(heard: &[(f64, Event)], is_it: impl Fn(&Event) -> bool) -> Vec<f64> {
 #[test]
 fn everything_happens_at_its_time() {
     let (_, heard, trial) = trial(
-        r#"(at_s: 10, event: DebrisFalls(shape: Disc(1), at: (20, 30), name: "rock")), (at_s: 60, event: Opens("rock")),
+        r#"(at_s: 10, event: DebrisFalls(shape: Disc(1), at: (20, 30), name: "rock")),
+           (at_s: 60, event: Opens("rock")),
            (at_s: 12, event: SourceAppears(at: (33, 26), radius_m: 2)), (at_s: 14, event: SourceDies("core")),
            (at_s: 16, event: RobotFails(3)), (at_s: 17, event: RobotLoses(robot: 1, energy: 20, hp: 5)),
            (at_s: 20, event: RescueesAppear(task: "near", grid: (2, 1))),
@@ -119,9 +120,9 @@ fn a_task_that_begins_later_gets_robots_then_and_none_after_its_end() {
 #[test]
 fn a_trial_goes_on_bit_for_bit_from_before_and_after_each_event() {
     let (scenario, _, whole) = trial(
-        r#"(at_s: 10, event: DebrisFalls(shape: Box(3, 1), at: (11, 25), name: "slab")), (at_s: 20, event: Closes("west")),
-           (at_s: 30, event: SourceDies("core")), (at_s: 35, event: RobotLoses(robot: 2, energy: 95)),
-           (at_s: 50, event: Opens("slab")),
+        r#"(at_s: 10, event: DebrisFalls(shape: Box(3, 1), at: (11, 25), name: "slab")),
+           (at_s: 20, event: Closes("west")), (at_s: 30, event: SourceDies("core")),
+           (at_s: 35, event: RobotLoses(robot: 2, energy: 95)), (at_s: 50, event: Opens("slab")),
            (at_s: 52, event: Opens("west")), (at_s: 60, event: TaskEnds("far"))"#,
     );
     let mut policy = policies::standard().open("RNE").unwrap();
@@ -171,15 +172,18 @@ fn what_waits_to_close_is_called_off_when_its_way_is_to_open() {
         ["called off"]
     );
     assert_eq!(story(r#"(at_s: 0, event: Closes("gate"))"#), ["closed"]);
-    let twice = r#"(at_s: 0, event: Closes("gate")), (at_s: 0, event: Opens("gate")), (at_s: 0, event: Closes("gate"))"#;
+    let twice = r#"(at_s: 0, event: Closes("gate")), (at_s: 0, event: Opens("gate")),
+        (at_s: 0, event: Closes("gate"))"#;
     assert_eq!(story(twice), ["called off", "closed"]);
 }
 
 #[test]
 fn two_events_of_one_thing_in_a_step_are_no_violation() {
     let (_, heard, _) = trial(
-        r#"(at_s: 10, event: SourceAppears(at: (33, 26), radius_m: 2, name: "s")), (at_s: 10, event: SourceDies("s")),
-           (at_s: 10, event: DebrisFalls(shape: Disc(1), at: (20, 30), name: "x")), (at_s: 10, event: Opens("x"))"#,
+        r#"(at_s: 10, event: SourceAppears(at: (33, 26), radius_m: 2, name: "s")),
+           (at_s: 10, event: SourceDies("s")),
+           (at_s: 10, event: DebrisFalls(shape: Disc(1), at: (20, 30), name: "x")),
+           (at_s: 10, event: Opens("x"))"#,
     );
     assert_eq!(when(&heard, |event| matches!(event, Event::WayOpened { .. })).len(), 1);
 }

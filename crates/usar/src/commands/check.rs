@@ -17,9 +17,9 @@ use crate::prelude::*;
 /// Check scenarios, sweep files and policies without running them
 #[derive(Debug, Args)]
 #[command(after_help = "\
-With --policy, a policy answers 1,000 random questions, twice, half of them with reports and ratings of seven \
-rounds, and is told which answers are against the rules or differ, and how long a decision takes. Exit status \
-1 if any is wrong.
+With --policy, a policy answers 1,000 random questions, twice, half of them with reports and ratings of \
+seven rounds, and is told which answers are against the rules or differ, and how long a decision takes. Exit \
+status 1 if any is wrong.
 
 Examples:
   usar check mine.ron mine.sweep.ron

@@ -227,8 +227,8 @@ mod tests {
     #[test]
     fn groups_are_read_by_the_names_of_tasks() {
         let question = serde_json::json!({
-            "schema_version": 3, "round": 1, "roles": [], "needs": [], "quotas": [], "members": [], "history": [],
-            "tasks": [{"name": "hard", "difficulty": 2}, {"name": "easy", "difficulty": 1}],
+            "schema_version": 3, "round": 1, "roles": [], "needs": [], "quotas": [], "members": [],
+            "history": [], "tasks": [{"name": "hard", "difficulty": 2}, {"name": "easy", "difficulty": 1}],
             "random_seed": "00".repeat(32),
         });
         let question = Question::from_json(&question.to_string()).unwrap();

@@ -216,8 +216,9 @@ fn footnote(folder: &Folder) -> String {
     };
     let part = shard.map_or(String::new(), |shard| format!(", shard {} of {}", shard.number, shard.of));
     format!(
-        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}{part}); {} delivered, \
-         as ratios of sums; totals include what robots spent outside a group, on their way to rest{gaps}{stalled}",
+        "mean ± sample standard deviation over {} paired trials (seeds {first} to {last}{part}); {} \
+         delivered, as ratios of sums; totals include what robots spent outside a group, on their way to \
+         rest{gaps}{stalled}",
         experiment.count(shard) / experiment.policies.len() / experiment.cases.len().max(1),
         experiment.base.words.text("energy and HP in points per rescuee"),
     )

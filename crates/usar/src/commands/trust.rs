@@ -13,19 +13,20 @@ use crate::prelude::*;
 /// Trust in a team from a table (CSV), and its groups by a policy
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The table (CSV with a header) has a row for each robot: id (any text) and needs, which are numbers >= 0. Each \
-column is a need but for these, which may be left out: role (policies split each role; the roles are merged \
-in the order in which the table names them first), x and y (metres, for policies that look at distances), \
-energy_level and hp_level (percent, for ENG and HP_DIS). Cells are separated by commas, or by `;` or tabs, \
-with decimal commas or points. A file that ends with .json is a question (docs/decisions.md).
+The table (CSV with a header) has a row for each robot: id (any text) and needs, which are numbers >= 0. \
+Each column is a need but for these, which may be left out: role (policies split each role; the roles are \
+merged in the order in which the table names them first), x and y (metres, for policies that look at \
+distances), energy_level and hp_level (percent, for ENG and HP_DIS). Cells are separated by commas, or by \
+`;` or tabs, with decimal commas or points. A file that ends with .json is a question (docs/decisions.md).
 
 Without --policy, all pairs are shown: the RNE of the robot of each row towards the robot of each column, in \
-nats. Lower RNE means more trust; trust is exp(-RNE). It is not symmetric. With a table, each need is divided \
-by its largest value in the team first, so that no unit dominates (--measure 'RNE(scale: false)': as it is).
+nats. Lower RNE means more trust; trust is exp(-RNE). It is not symmetric. With a table, each need is \
+divided by its largest value in the team first, so that no unit dominates (--measure 'RNE(scale: false)': as \
+it is).
 
-The maths takes more of a need for better. --less-is-better damage=100 says that of damage less is better and \
-100 is the worst: it counts as 100 - damage, what is left. A robot at the worst has none of that need, and \
-the RNE towards it from a robot that has some is infinite.
+The maths takes more of a need for better. --less-is-better damage=100 says that of damage less is better \
+and 100 is the worst: it counts as 100 - damage, what is left. A robot at the worst has none of that need, \
+and the RNE towards it from a robot that has some is infinite.
 
 --json prints all pairs in the tables `distrust` (infinite: null) and `trust`, a row for each robot that \
 trusts. With --policy it prints the groups by the ids of the table, and as `decision` the \

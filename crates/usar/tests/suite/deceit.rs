@@ -8,8 +8,10 @@ const TWO: &str = "(name: \"two\", duration_s: 120.0, dt_s: 0.02, arena_m: (60.0
     roles: [(name: \"carrier\", observing_m: 6.0, capacity: 2, resources: 4)],
     initial_levels: (hp: (mean: 60.0, sd: 30.0)),
     tasks: [
-        (name: \"far\", difficulty: 2, center: (50.0, 22.0), size_m: (8.0, 8.0), grid: (5, 5), rest: (4.0, 4.0)),
-        (name: \"near\", difficulty: 1, center: (24.0, 8.0), size_m: (8.0, 8.0), grid: (5, 5), rest: (8.0, 4.0)),
+        (name: \"far\", difficulty: 2, center: (50.0, 22.0), size_m: (8.0, 8.0), grid: (5, 5),
+            rest: (4.0, 4.0)),
+        (name: \"near\", difficulty: 1, center: (24.0, 8.0), size_m: (8.0, 8.0), grid: (5, 5),
+            rest: (8.0, 4.0)),
     ],
     mission: (hp_threshold: 0.0, health_floor: 0.1),
 )";

@@ -4,11 +4,12 @@
 use crate::support::{read, succeeds, usar};
 
 const WORLD: &str = r#"(format: 2, name: "w", duration_s: 20, dt_s: 0.02, arena_m: (30, 30),
-    team: [(role: "robot", count: Uniform(2, 3), center: (15, 3), width_m: 4, body: (observing_m: 4))], // a comment
+    team: [(role: "robot", count: Uniform(2, 3), center: (15, 3), width_m: 4, body: (observing_m: 4))],
     tasks: [(name: "a", difficulty: 1, center: (15, 24), size_m: (4, 2), grid: (2, 2), rest: (6, 8))],
-    radiation: [(at: (Uniform(8, 22), 14), radius_m: 2, name: "core")],
+    radiation: [(at: (Uniform(8, 22), 14), radius_m: 2, name: "core")], // a comment
     walls: [(from: (8, 18), to: (30, 18), doors: [(at_m: 7, width_m: 3, name: "gate")])],
-    timeline: [(at_s: 5, event: Closes("gate")), (at_s: Uniform(8, 9), event: SourceDies("core")), (at_s: 12, event: RobotFails(0))],
+    timeline: [(at_s: 5, event: Closes("gate")), (at_s: Uniform(8, 9), event: SourceDies("core")),
+        (at_s: 12, event: RobotFails(0))],
 )
 "#;
 

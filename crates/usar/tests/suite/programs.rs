@@ -119,8 +119,8 @@ fn a_program_in_a_session_of_its_own_ends_with_the_command() {
     let folder = place();
     let here = folder.path();
     let lines = "import os, time\n\
-        if not os.path.exists('asleep'):\n    os.setsid()\n    print(os.getpid(), file=open('pids', 'w'))\n    \
-        open('asleep', 'w').close(); time.sleep(600)";
+        if not os.path.exists('asleep'):\n    os.setsid()\n    \
+        print(os.getpid(), file=open('pids', 'w'))\n    open('asleep', 'w').close(); time.sleep(600)";
     write(here, lines);
     for signal in ["KILL", "TERM"] {
         let _ = std::fs::remove_file(here.join("asleep"));

@@ -249,11 +249,11 @@ fn bad_options_of_a_table_are_refused() {
 #[test]
 fn a_question_in_json_is_answered_in_json() {
     let folder = tempfile::tempdir().unwrap();
-    let question = r#"{"schema_version": 3, "round": 1, "roles": ["walker"], "needs": [{"name": "hp", "weight": 1.0}],
-        "levels": [{"name": "energy", "unit": "%"}],
-        "tasks": [{"name": "a", "difficulty": 1}, {"name": "b", "difficulty": 3}, {"name": "c", "difficulty": 2}],
-        "quotas": [{"members": [1, 1, 1], "sizes": "Parts"}], "history": [],
-        "members": [{"id": 4, "role": 0, "home": [0, 0], "needs": [1.0], "levels": [10.0]},
+    let question = r#"{"schema_version": 3, "round": 1, "roles": ["walker"],
+        "needs": [{"name": "hp", "weight": 1.0}], "levels": [{"name": "energy", "unit": "%"}],
+        "tasks": [{"name": "a", "difficulty": 1}, {"name": "b", "difficulty": 3},
+            {"name": "c", "difficulty": 2}], "quotas": [{"members": [1, 1, 1], "sizes": "Parts"}],
+        "history": [], "members": [{"id": 4, "role": 0, "home": [0, 0], "needs": [1.0], "levels": [10.0]},
             {"id": 2, "role": 0, "home": [0, 0], "needs": [2.0], "levels": [90.0]},
             {"id": 7, "role": 0, "home": [0, 0], "needs": [3.0], "levels": [50.0]}],
         "random_seed": "0000000000000000000000000000000000000000000000000000000000000000"}"#;

@@ -178,8 +178,8 @@ impl Totals {
         println!(
             "{}: {count} worlds, {robots} robots: {violations} violations, {internal} internal errors, \
              {refused} other failures, {standstills} fleets that stood for {STANDSTILL_S} s (longest {:.1} \
-             s), {stalls} robots ({share:.2} %) without progress for 30 s, {} for {LONG_STALL_S} s, {} cut off, {} \
-             stalled trials, {} worlds with errands left, {} without a finished round",
+             s), {stalls} robots ({share:.2} %) without progress for 30 s, {} for {LONG_STALL_S} s, {} cut \
+             off, {} stalled trials, {} worlds with errands left, {} without a finished round",
             family.name,
             self.longest,
             self.long_stalls,

@@ -100,7 +100,8 @@ fn flow(doors: &[AtDoor], published: &[Published]) -> String {
         format!("| {} | {} | {} | {a_metre} | {} |", a.width_m, of_people(a.width_m), ours(a), ours(b))
     };
     let header = format!(
-        "| width, m | people a second | robots a second, {} m deep | jams | a metre wide | {} m deep | jams |",
+        "| width, m | people a second | robots a second, {} m deep | jams \
+         | a metre wide | {} m deep | jams |",
         DEPTHS_M[0], DEPTHS_M[1]
     );
     table(&header, shallow.iter().zip(deep).map(row))

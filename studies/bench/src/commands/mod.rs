@@ -29,7 +29,8 @@ its .json files and for the config.json of its subfolders; a config.json has the
 Problems of at most 10 tasks and 4 robots are solved exactly. Gaps are in percent of the optimum, or of \
 the best schedule found where a problem is larger. A policy is asked whenever a robot becomes free, over \
 the tasks that are left. Two methods plan without being asked: EARLIEST takes the task that can start the \
-earliest, again and again; CBBA is the auction with bundles of sequences. studies/bench/docs/bench.md has the rules.
+earliest, again and again; CBBA is the auction with bundles of sequences. studies/bench/docs/bench.md has \
+the rules.
 
 --out gets makespans.csv, the problems that were made (problems/), and by what program (program.json).
 

@@ -15,8 +15,8 @@ const CLAIM_COLUMNS: &str =
     "scenario,trials,section,claim,words,verdict,comparison,n,difference,low,high,shared_low,shared_high";
 
 /// The columns of `power.csv`: one comparison of one claim.
-const POWER_COLUMNS: &str = "scenario,claim,leaning,claim_pairs_needed,holds_at_10,does_not_hold_at_10,comparison,n,\
-    difference,sd,pairs_needed,least_difference_at_10";
+const POWER_COLUMNS: &str = "scenario,claim,leaning,claim_pairs_needed,holds_at_10,does_not_hold_at_10,\
+    comparison,n,difference,sd,pairs_needed,least_difference_at_10";
 
 /// A CSV of a folder's trials with only the columns of the authors' tables.
 ///

@@ -67,14 +67,17 @@ const fn claim(
 pub const CLAIMS: &[Claim] = &[
     claim("dearer energy", TASKS, "the hard task costs more energy per rescuee than the easy \
         one", &under_each_policy("energy_per_rescuee.hard", "energy_per_rescuee.easy")),
-    claim("dearer HP", TASKS, "the hard task costs more HP per rescuee than the easy one", &under_each_policy("hp_per_rescuee.hard", "hp_per_rescuee.easy")),
+    claim("dearer HP", TASKS, "the hard task costs more HP per rescuee than the easy one",
+        &under_each_policy("hp_per_rescuee.hard", "hp_per_rescuee.easy")),
     claim("most", RESULTS, "RNE rescues the most in total", &most("rescuees.total")),
     claim("most, hard", RESULTS, "RNE rescues the most from the hard task", &most("rescuees.hard")),
     claim("DIS in easy", RESULTS, "distance-based grouping rescues the most from the easy task", DIS_IN_EASY),
     claim("RNE in easy", RESULTS, "RNE rescues fewer from the easy task than distance-based \
         grouping", RNE_IN_EASY),
     claim("energy", RESULTS, "RNE spends the least energy per rescuee", &least("energy_per_rescuee.total")),
-    claim("energy, hard", RESULTS, "RNE spends the least energy per rescuee of the hard task", &least("energy_per_rescuee.hard")),
+    claim("energy, hard", RESULTS, "RNE spends the least energy per rescuee of the hard task",
+        &least("energy_per_rescuee.hard")),
     claim("HP", RESULTS, "RNE loses the least HP per rescuee", &least("hp_per_rescuee.total")),
-    claim("HP, hard", RESULTS, "RNE loses the least HP per rescuee of the hard task", &least("hp_per_rescuee.hard")),
+    claim("HP, hard", RESULTS, "RNE loses the least HP per rescuee of the hard task",
+        &least("hp_per_rescuee.hard")),
 ];

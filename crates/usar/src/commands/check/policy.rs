@@ -114,8 +114,8 @@ fn told(checked: &Checked) -> Report {
             differing.len()
         ),
         format!(
-            "started in {start_s:.2} s; a decision took {median_ms:.3} ms (median), 95 % at most {p95_ms:.3} ms, \
-             the longest {longest_ms:.3} ms"
+            "started in {start_s:.2} s; a decision took {median_ms:.3} ms (median), 95 % at most {p95_ms:.3} \
+             ms, the longest {longest_ms:.3} ms"
         ),
     ])
 }

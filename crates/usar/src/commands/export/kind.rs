@@ -68,8 +68,8 @@ impl Kind {
                 }
             }
             _ => refuse!(
-                "--to: must end with .csv, .parquet, .mcap, .png, .svg, .pdf or .gif, or be - for the table of \
-                 a sweep, found {path}"
+                "--to: must end with .csv, .parquet, .mcap, .png, .svg, .pdf or .gif, or be - for the table \
+                 of a sweep, found {path}"
             ),
         })
     }

@@ -27,8 +27,8 @@ use pictures::Width;
 #[command(after_help = "\
 Of a trial, --to is NAME.csv or NAME.parquet for its tables (NAME-robots, NAME-groups, NAME-events and \
 NAME-decisions: a row for each thing at each time, units in the names); .mcap for a log for Foxglove, \
-Lichtblick and Rerun; .png, .svg or .pdf with --at for a moment, with --trails for all trajectories, and with \
---every for a series, whose name has a place for the number; .gif with --every for an animation. In an \
+Lichtblick and Rerun; .png, .svg or .pdf with --at for a moment, with --trails for all trajectories, and \
+with --every for a series, whose name has a place for the number; .gif with --every for an animation. In an \
 animation, --policy can be a list: the trials are drawn side by side. No display and no fonts are needed.
 
 Of a sweep's folder, --to is .pdf, .svg or .png with --figure for one figure of its report, and .csv for one \

@@ -18,10 +18,10 @@ use crate::prelude::*;
 /// How many liars does a policy bear? Rules, estimators and uses of trust against lies
 #[derive(Debug, Args)]
 #[command(after_help = "\
-FILE is a sweep file with an axis of who lies, such as \"deceit[0].who\": [Count(0), Count(1), Count(2)]; all \
-other axes together are the lie, or the world. Its baseline is the fair draw, its first primary metric is \
-judged, and its margin is the largest difference that does not matter. Policies stand behind estimators as \
-`HP_DIS <- Kalman | Exclude`.
+FILE is a sweep file with an axis of who lies, such as \"deceit[0].who\": [Count(0), Count(1), Count(2)]; \
+all other axes together are the lie, or the world. Its baseline is the fair draw, its first primary metric \
+is judged, and its margin is the largest difference that does not matter. Policies stand behind estimators \
+as `HP_DIS <- Kalman | Exclude`.
 
 A policy breaks down between two numbers of liars: up to the first it is shown to be better than the draw, \
 with the second it is shown not to be. Both hold together at 95 %. Where a policy is not shown to be \
@@ -29,8 +29,8 @@ better among honest robots, there is nothing to break down. How well estimators 
 `DIS <- ESTIMATOR`: DIS hears nothing, so that all estimators have the same evidence.
 
 With --replay, policies are asked at the decisions of trials that DIS decided, and each answer is worth what \
-came of it when the study of regret played all assignments to the end of the round. It is a filter: no decision \
-changes the rounds after it, and a policy that leaves robots idle has no value.
+came of it when the study of regret played all assignments to the end of the round. It is a filter: no \
+decision changes the rounds after it, and a policy that leaves robots idle has no value.
 
 The folder is that of a sweep, with all of its tables, and with two figures and their numbers: what each \
 policy has above a draw by number of liars (deceit-above-draw), and how many liars it bears \

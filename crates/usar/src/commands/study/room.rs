@@ -26,13 +26,13 @@ const RULES: [&str; 4] = ["RNE", "DIS", "ENG", "HP_DIS"];
 /// Does grouping matter in this world? Every rule, the best and the worst choice against a fair draw
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A world in which the best and the worst grouping rescue about the same cannot tell rules apart, and a lie costs \
-nothing in it. The best and the worst choice are those of an oracle that plays assignments to the end of the \
-round and takes the one with the most, or the fewest, rescuees a minute: neither looks further ahead. Of many \
-assignments it plays a part only (--limit), so that the room is at least what is told.
+A world in which the best and the worst grouping rescue about the same cannot tell rules apart, and a lie \
+costs nothing in it. The best and the worst choice are those of an oracle that plays assignments to the end \
+of the round and takes the one with the most, or the fewest, rescuees a minute: neither looks further ahead. \
+Of many assignments it plays a part only (--limit), so that the room is at least what is told.
 
-The folder is that of a sweep, with all of its tables; an interrupted study resumes. Folders of several worlds \
-make one table with a row for each.
+The folder is that of a sweep, with all of its tables; an interrupted study resumes. Folders of several \
+worlds make one table with a row for each.
 
 Examples:
   usar study room tunnel

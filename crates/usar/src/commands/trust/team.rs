@@ -150,8 +150,9 @@ impl Team {
             PolicyError::MissingFact { policy, what, .. } => rows.table.table.refused_at(
                 1,
                 format_args!(
-                    "policy {policy} needs {what}, which is missing; it takes levels from the columns energy_level \
-                     and hp_level, and distances from x and y to the places of `--task NAME,DIFFICULTY,X,Y`"
+                    "policy {policy} needs {what}, which is missing; it takes levels from the columns \
+                     energy_level and hp_level, and distances from x and y to the places of `--task \
+                     NAME,DIFFICULTY,X,Y`"
                 ),
             ),
             other => Failure::input_at(&self.file)(other),

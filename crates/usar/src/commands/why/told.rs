@@ -164,8 +164,8 @@ fn exchange(best: &Exchange, score: f64, account: &Account, asked: &Trial) -> St
     let with = best.with;
     if asked.registry.chosen_measure().is_some() {
         return format!(
-            "  In the place of robot {with}, {measure} between the groups would be {then} instead of {score:.3e} \
-             {unit}"
+            "  In the place of robot {with}, {measure} between the groups would be {then} instead of \
+             {score:.3e} {unit}"
         );
     }
     let verdict = match best.score {
