@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::event::EventLog;
 use crate::executor::Executor;
-use crate::model::{RightOfWayModel, RuleKind};
+use crate::model::{RetreatModel, RightOfWayModel, RuleKind};
 use crate::report::Track;
 
 pub use delay::{Delay, DelayCause, wait_cycles};
@@ -33,6 +33,7 @@ pub use passing::PASSING_RANGE_M;
 use predict::{Conflicts, Neighbours};
 pub use priority::PriorityKey;
 use reciprocal::{Near, Reciprocal, Sight, Turn, Unhindered};
+use retreat::{Crowd, Retreats};
 use sets::Sets;
 
 /// The conflict resolver of one trial.
@@ -76,15 +77,22 @@ pub struct Scratch {
     pub executor: Executor,
 }
 
-/// One step of a rule with these constants and this state.
-struct Step<'s, 'm, Rules, State> {
-    rules: &'s Rules,
-    state: &'s mut State,
+/// One step, whatever the rule.
+struct Step<'s, 'm> {
+    model: &'s RightOfWayModel,
     scratch: &'s mut Scratch,
     movers: &'s mut [Mover<'m>],
     /// Those of the last step, until they are replaced.
     directives: &'s mut Vec<Directive>,
     log: &'s mut EventLog,
+}
+
+impl Step<'_, '_> {
+    /// Has `blocker` make room for `i`. Returns whether it does.
+    fn make_room(&mut self, retreats: &mut Retreats, rules: &RetreatModel, i: usize, blocker: usize) -> bool {
+        let crowd = Crowd { rules, movers: self.movers, neighbours: &self.scratch.neighbours };
+        retreats.make_room(i, blocker, &crowd, self.log)
+    }
 }
 
 impl Resolver {
@@ -109,16 +117,13 @@ impl Resolver {
     ) -> &[Directive] {
         let directives = &mut self.directives;
         directives.resize(movers.len(), Directive::Stand);
+        let mut step = Step { model, scratch, movers, directives, log };
         match &mut self.rule {
-            Rule::Reciprocal(state) => {
-                Step { rules: &model.reciprocal, state, scratch, movers, directives, log }.resolve();
-            }
-            Rule::Sets(state) => {
-                Step { rules: &model.sets, state, scratch, movers, directives, log }.resolve();
-            }
+            Rule::Reciprocal(state) => state.resolve(&mut step),
+            Rule::Sets(state) => state.resolve(&mut step),
             Rule::None => {
-                directives.clear();
-                directives.extend(movers.iter().map(|mover| Directive::granted(mover.preferred)));
+                step.directives.clear();
+                step.directives.extend(step.movers.iter().map(|mover| Directive::granted(mover.preferred)));
             }
         }
         &self.directives

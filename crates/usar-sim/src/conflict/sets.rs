@@ -15,11 +15,10 @@ use serde::{Deserialize, Serialize};
 
 use super::deadlock::{ConflictSet, NextTurn, Observation, Progress};
 use super::passing::{Surroundings, nearest_in_the_way, passing_direction};
-use super::retreat::{Crowd, Retreats};
+use super::retreat::Retreats;
 use super::{Directive, Mover, Scratch, Step, wait_cycles};
 use crate::event::Event;
 use crate::ids::RobotId;
-use crate::model::SetsModel;
 
 /// Margin at which robots squeeze past if nothing is free at the full margin, in metres.
 const SQUEEZE_MARGIN_M: f32 = 0.03;
@@ -43,38 +42,32 @@ impl Sets {
     pub(super) fn sets(&self) -> &[ConflictSet] {
         &self.sets
     }
-}
 
-impl Step<'_, '_, SetsModel, Sets> {
     /// One directive for each mover.
-    pub(super) fn resolve(&mut self) {
-        let Self { rules, state, scratch, movers, .. } = self;
+    pub(super) fn resolve(&mut self, step: &mut Step) {
+        let Step { model, scratch, movers, .. } = step;
+        let rules = &model.sets;
         let (margin, horizon) = (rules.retreats.margin, rules.horizon);
-        state.blocked_steps.resize(movers.len(), 0);
-        state.headings.resize(movers.len(), Vector::ZERO);
+        self.blocked_steps.resize(movers.len(), 0);
+        self.headings.resize(movers.len(), Vector::ZERO);
         scratch.neighbours.sort(movers);
-        state.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
+        self.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
         scratch.neighbours.pair(movers, margin, horizon);
         scratch.conflicts.find(movers, &scratch.neighbours, margin, horizon);
-        self.carry_over();
-        let progress: Vec<Progress> = (0..self.state.sets.len()).map(|set| self.judge(set)).collect();
-        self.direct(&progress);
-        for (heading, directive) in self.state.headings.iter_mut().zip(self.directives.iter()) {
+        self.carry_over(step);
+        let progress: Vec<Progress> = (0..self.sets.len()).map(|set| self.judge(step, set)).collect();
+        self.direct(step, &progress);
+        for (heading, directive) in self.headings.iter_mut().zip(step.directives.iter()) {
             *heading = directive.velocity().normalize_or_zero();
         }
-        self.ask_for_room();
-    }
-
-    fn make_room(&mut self, i: usize, blocker: usize) -> bool {
-        let (rules, neighbours) = (&self.rules.retreats, &self.scratch.neighbours);
-        self.state.retreats.make_room(i, blocker, &Crowd { rules, movers: self.movers, neighbours }, self.log)
+        self.ask_for_room(step);
     }
 
     /// Carries the sets of the last step over to this step. A set continues the earlier set with which it
     /// shares the most members and keeps its order: the head stays the head until it leaves the set or a
     /// member makes room. A set that shares no member with an earlier one is new.
-    fn carry_over(&mut self) {
-        let Self { state: Sets { sets, retreats, .. }, scratch, movers, log, .. } = self;
+    fn carry_over(&mut self, step: &mut Step) {
+        let (Self { sets, retreats, .. }, Step { scratch, movers, log, .. }) = (self, step);
         if sets.is_empty() && scratch.conflicts.is_empty() {
             note_sets(&mut scratch.set_of, movers.len(), [].iter());
             return;
@@ -101,15 +94,15 @@ impl Step<'_, '_, SetsModel, Sets> {
     /// Judges the progress of a set. A stuck set gets room, another head or a pause: first the robot in the
     /// way of the head is asked to make room. If it makes none, the turn passes to another head, or the whole
     /// set backs off.
-    fn judge(&mut self, at: usize) -> Progress {
-        let Self { rules, state: Sets { sets, retreats, .. }, movers, log, .. } = self;
-        let set = &mut sets[at];
+    fn judge(&mut self, step: &mut Step, at: usize) -> Progress {
+        let (rules, movers) = (&step.model.sets, &*step.movers);
+        let set = &mut self.sets[at];
         let speeds = set.order.iter().map(|i| movers[*i].velocity.length());
         let seen = Observation {
             fastest: speeds.fold(0.0, f32::max),
             head_way_left: movers[set.order[0]].way_left(),
         };
-        if retreats.is_served(set.order[0]) {
+        if self.retreats.is_served(set.order[0]) {
             set.wait_for_room();
         }
         let progress = set.observe(seen, rules.patience);
@@ -117,24 +110,24 @@ impl Step<'_, '_, SetsModel, Sets> {
             return progress;
         }
         let (head, order) = (set.order[0], robots(&set.order, movers));
-        log.push(Event::Deadlocked { robots: order });
-        if let Some(blocker) = self.who_stops(head)
-            && self.make_room(head, blocker)
+        step.log.push(Event::Deadlocked { robots: order });
+        if let Some(blocker) = who_stops(step, head)
+            && step.make_room(&mut self.retreats, &rules.retreats, head, blocker)
         {
-            self.state.sets[at].wait_for_room();
+            self.sets[at].wait_for_room();
             return Progress::Flowing;
         }
-        self.state.retreats.give_up(head, self.rules.retreats.respite);
-        let set = &mut self.state.sets[at];
-        let turn = set.give_turn(self.rules);
-        let robots = robots(&set.order, self.movers);
+        self.retreats.give_up(head, rules.retreats.respite);
+        let set = &mut self.sets[at];
+        let turn = set.give_turn(rules);
+        let robots = robots(&set.order, step.movers);
         match turn {
             NextTurn::OfNextHead => {
-                self.log.push(Event::TurnPassed { robots });
+                step.log.push(Event::TurnPassed { robots });
                 Progress::Flowing
             }
             NextTurn::OfNobody => {
-                self.log.push(Event::BackedOff { robots });
+                step.log.push(Event::BackedOff { robots });
                 Progress::BackingOff
             }
         }
@@ -142,60 +135,47 @@ impl Step<'_, '_, SetsModel, Sets> {
 
     /// Notes which robots stop. A robot stops if it has nowhere to go, or if it is in conflict with a robot
     /// ahead of it in the set's order that is moving.
-    fn note_who_stands(&mut self) {
-        let (Scratch { conflicts, set_of, stands, .. }, movers) = (&mut *self.scratch, &*self.movers);
+    fn note_who_stands(&self, step: &mut Step) {
+        let (Scratch { conflicts, set_of, stands, .. }, movers) = (&mut *step.scratch, &*step.movers);
         stands.clear();
         let is_alone = |i: usize| set_of[i].is_none();
         stands.extend((0..movers.len()).map(|i| !is_alone(i) || !movers[i].wishes_to_move()));
-        for i in self.state.sets.iter().flat_map(|set| &set.order) {
+        for i in self.sets.iter().flat_map(|set| &set.order) {
             let goes_before = |j: &usize| set_of[*j] == set_of[*i] && !stands[*j];
             stands[*i] = conflicts.of(*i).iter().any(goes_before);
         }
     }
 
-    /// The robot in the way of a robot that makes no progress: the robot that blocked it in the last step, or
-    /// else the nearest slow robot in its way.
-    fn who_stops(&self, i: usize) -> Option<usize> {
-        let movers = &*self.movers;
-        if let Directive::Blocked { by } = self.directives[i] {
-            return by.map(RobotId::index);
-        }
-        let me = &movers[i];
-        let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.preferred.length();
-        let near = self.scratch.neighbours.of(i).iter().filter(slow);
-        nearest_in_the_way(me.preferred, self.rules.retreats.margin, near.map(|j| me.sees(*j, movers)))
-    }
-
     /// Directs all robots. Heads, robots without conflicts and members that need not stop pass the robots
     /// that stand. The others yield, or back off.
-    fn direct(&mut self, progress: &[Progress]) {
-        self.note_who_stands();
-        for i in 0..self.movers.len() {
-            let goes = self.movers[i].wishes_to_move() && !self.scratch.stands[i];
-            self.directives[i] = if goes { self.pass(i, self.movers[i].preferred) } else { Directive::Stand };
+    fn direct(&self, step: &mut Step, progress: &[Progress]) {
+        self.note_who_stands(step);
+        for i in 0..step.movers.len() {
+            let me = &step.movers[i];
+            let goes = me.wishes_to_move() && !step.scratch.stands[i];
+            step.directives[i] = if goes { self.pass(step, i, me.preferred) } else { Directive::Stand };
         }
-        let movers = &*self.movers;
-        for (set, progress) in self.state.sets.iter().zip(progress) {
+        for (set, progress) in self.sets.iter().zip(progress) {
             let backs_off = *progress == Progress::BackingOff;
             let middle =
-                set.order.iter().map(|i| movers[*i].position).sum::<Vector>() / set.order.len() as f32;
-            for i in set.order.iter().filter(|i| backs_off || self.scratch.stands[**i]) {
-                self.directives[*i] = if backs_off {
-                    let preferred = back_off_velocity(&movers[*i], middle);
-                    Directive::BackOff(self.pass(*i, preferred).velocity())
+                set.order.iter().map(|i| step.movers[*i].position).sum::<Vector>() / set.order.len() as f32;
+            for i in set.order.iter().filter(|i| backs_off || step.scratch.stands[**i]) {
+                step.directives[*i] = if backs_off {
+                    let preferred = back_off_velocity(&step.movers[*i], middle);
+                    Directive::BackOff(self.pass(step, *i, preferred).velocity())
                 } else {
-                    Directive::Yield { to: movers[set.order[0]].robot }
+                    Directive::Yield { to: step.movers[set.order[0]].robot }
                 };
             }
         }
-        for (i, retreat) in self.state.retreats.iter() {
-            let room_for = movers[retreat.head].robot;
-            let velocity = match self.directives[i] {
+        for (i, retreat) in self.retreats.iter() {
+            let room_for = step.movers[retreat.head].robot;
+            let velocity = match step.directives[i] {
                 Directive::Proceed(velocity) => velocity,
                 Directive::Stand => Vector::ZERO,
                 _ => continue,
             };
-            self.directives[i] = Directive::Retreat { velocity, room_for };
+            step.directives[i] = Directive::Retreat { velocity, room_for };
         }
     }
 
@@ -203,51 +183,51 @@ impl Step<'_, '_, SetsModel, Sets> {
     /// it moves outside any set and has come no nearer to its goal for a while. A blocker that has nowhere to
     /// go is always asked. A blocker with a goal of its own is asked only by the head of its set, by a robot
     /// that makes room itself, or by the robot with the best claim on a cycle of waiting.
-    fn ask_for_room(&mut self) {
-        let (rules, set_of) = (self.rules, &self.scratch.set_of);
+    fn ask_for_room(&mut self, step: &mut Step) {
+        let (rules, set_of) = (&step.model.sets, &step.scratch.set_of);
         let mut due = Vec::new();
-        for (i, directive) in self.directives.iter().enumerate() {
+        for (i, directive) in step.directives.iter().enumerate() {
             match directive {
                 Directive::Blocked { by } => {
-                    self.state.blocked_steps[i] += 1;
-                    let steps = self.state.blocked_steps[i];
+                    self.blocked_steps[i] += 1;
+                    let steps = self.blocked_steps[i];
                     let asks = steps == rules.patience.deadlock || steps.is_multiple_of(rules.ask_again);
                     due.extend(by.filter(|_| asks).map(|by| (i, by.index())));
                 }
                 Directive::Proceed(_) if set_of[i].is_none() => {
-                    self.state.blocked_steps[i] = 0;
-                    let steps = self.movers[i].stalled_steps;
+                    self.blocked_steps[i] = 0;
+                    let steps = step.movers[i].stalled_steps;
                     if steps >= rules.patience.livelock && steps.is_multiple_of(rules.ask_again) {
-                        due.extend(self.who_stops(i).map(|by| (i, by)));
+                        due.extend(who_stops(step, i).map(|by| (i, by)));
                     }
                 }
-                _ => self.state.blocked_steps[i] = 0,
+                _ => self.blocked_steps[i] = 0,
             }
         }
         if due.is_empty() {
             return;
         }
         let waits_for: Vec<Option<usize>> =
-            self.directives.iter().map(|directive| directive.waits_for().map(RobotId::index)).collect();
+            step.directives.iter().map(|directive| directive.waits_for().map(RobotId::index)).collect();
         let cycles = wait_cycles(&waits_for);
         for (i, blocker) in due {
-            let is_parked = !self.movers[blocker].wishes_to_move();
-            let set_of = &self.scratch.set_of;
+            let is_parked = !step.movers[blocker].wishes_to_move();
+            let set_of = &step.scratch.set_of;
             let set = set_of[i].filter(|set| set_of[blocker] == Some(*set));
-            let is_head = set.is_some_and(|set| self.state.sets[set].order[0] == i);
-            if is_parked || is_head || self.state.retreats.depth(i) > 0 || self.leads_cycle(i, &cycles) {
-                self.make_room(i, blocker);
+            let is_head = set.is_some_and(|set| self.sets[set].order[0] == i);
+            if is_parked || is_head || self.retreats.depth(i) > 0 || self.leads_cycle(step, i, &cycles) {
+                step.make_room(&mut self.retreats, &rules.retreats, i, blocker);
             }
         }
     }
 
     /// Whether a robot has the best claim among the blocked robots of a wait cycle.
-    fn leads_cycle(&self, i: usize, cycles: &[Vec<usize>]) -> bool {
-        let movers = &*self.movers;
-        let blocked = |k: &&usize| matches!(self.directives[**k], Directive::Blocked { .. });
+    fn leads_cycle(&self, step: &Step, i: usize, cycles: &[Vec<usize>]) -> bool {
+        let movers = &*step.movers;
+        let blocked = |k: &&usize| matches!(step.directives[**k], Directive::Blocked { .. });
         cycles.iter().filter(|cycle| cycle.contains(&i)).any(|cycle| {
             let best = cycle.iter().filter(blocked).min_by(|a, b| {
-                let depth = |k: usize| std::cmp::Reverse(self.state.retreats.depth(k));
+                let depth = |k: usize| std::cmp::Reverse(self.retreats.depth(k));
                 depth(**a).cmp(&depth(**b)).then(movers[**a].priority.precedence(&movers[**b].priority))
             });
             best == Some(&i)
@@ -256,9 +236,9 @@ impl Step<'_, '_, SetsModel, Sets> {
 
     /// The directive of a robot that has the right of way: to pass the robots that stand, at the full margin
     /// or squeezing through, or `Blocked`.
-    fn pass(&self, i: usize, preferred: Vector) -> Directive {
-        let (me, near, stands) = (&self.movers[i], self.scratch.neighbours.of(i), &self.scratch.stands);
-        let blockers = near.iter().filter(|j| stands[**j]).map(|j| me.sees(*j, self.movers));
+    fn pass(&self, step: &Step, i: usize, preferred: Vector) -> Directive {
+        let (me, near, stands) = (&step.movers[i], step.scratch.neighbours.of(i), &step.scratch.stands);
+        let blockers = near.iter().filter(|j| stands[**j]).map(|j| me.sees(*j, step.movers));
         if blockers.clone().next().is_none() {
             return Directive::Proceed(preferred.normalize_or_zero() * preferred.length());
         }
@@ -266,9 +246,9 @@ impl Step<'_, '_, SetsModel, Sets> {
         let mut surroundings = Surroundings {
             preferred,
             discs: discs.collect(),
-            margin: self.rules.retreats.margin,
+            margin: step.model.sets.retreats.margin,
             known: me.known,
-            heading: self.state.headings[i],
+            heading: self.headings[i],
         };
         if let Some(direction) = passing_direction(me, &surroundings) {
             return Directive::Proceed(direction * preferred.length());
@@ -278,8 +258,21 @@ impl Step<'_, '_, SetsModel, Sets> {
             return Directive::Proceed(direction * preferred.length() * SQUEEZE_SPEED);
         }
         let blocker = nearest_in_the_way(preferred, surroundings.margin, blockers);
-        Directive::Blocked { by: blocker.map(|other| self.movers[other].robot) }
+        Directive::Blocked { by: blocker.map(|other| step.movers[other].robot) }
     }
+}
+
+/// The robot in the way of a robot that makes no progress: the robot that blocked it in the last step, or
+/// else the nearest slow robot in its way.
+fn who_stops(step: &Step, i: usize) -> Option<usize> {
+    let movers = &*step.movers;
+    if let Directive::Blocked { by } = step.directives[i] {
+        return by.map(RobotId::index);
+    }
+    let me = &movers[i];
+    let slow = |j: &&usize| movers[**j].velocity.length() < 0.5 * me.preferred.length();
+    let near = step.scratch.neighbours.of(i).iter().filter(slow);
+    nearest_in_the_way(me.preferred, step.model.sets.retreats.margin, near.map(|j| me.sees(*j, movers)))
 }
 
 /// Notes for each robot the set of which it is a member.

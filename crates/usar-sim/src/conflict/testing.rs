@@ -7,7 +7,7 @@ use super::reciprocal::Reciprocal;
 use super::{Directive, Mover, PriorityKey, Scratch, Step};
 use crate::event::EventLog;
 use crate::ids::RobotId;
-use crate::model::{Brakes, ReciprocalModel, RightOfWayModel};
+use crate::model::{Brakes, RightOfWayModel};
 
 /// A ground robot of 0.4 m radius with this preferred velocity, whose route leads 10 m in that direction.
 pub(super) fn mover(id: u32, at: [f32; 2], preferred: [f32; 2]) -> Mover<'static> {
@@ -47,7 +47,7 @@ pub(super) fn rules_of_right_of_way() -> RightOfWayModel {
 
 /// The default rule, with all that its steps need.
 pub(super) struct Bench {
-    pub(super) rules: ReciprocalModel,
+    pub(super) model: RightOfWayModel,
     pub(super) state: Reciprocal,
     scratch: Scratch,
     directives: Vec<Directive>,
@@ -57,7 +57,7 @@ pub(super) struct Bench {
 impl Bench {
     pub(super) fn new() -> Self {
         Self {
-            rules: rules_of_right_of_way().reciprocal,
+            model: rules_of_right_of_way(),
             state: Reciprocal::default(),
             scratch: Scratch::default(),
             directives: Vec::new(),
@@ -65,20 +65,17 @@ impl Bench {
         }
     }
 
-    /// One step of these robots.
-    pub(super) fn step<'s, 'm>(
-        &'s mut self,
-        movers: &'s mut [Mover<'m>],
-    ) -> Step<'s, 'm, ReciprocalModel, Reciprocal> {
-        let Self { rules, state, scratch, directives, log } = self;
+    /// A part of the step of these robots.
+    pub(super) fn step(&mut self, movers: &mut [Mover], act: fn(&mut Reciprocal, &mut Step)) {
+        let Self { model, state, scratch, directives, log } = self;
         directives.resize(movers.len(), Directive::Stand);
         scratch.neighbours.sort(movers);
-        Step { rules, state, scratch, movers, directives, log }
+        act(state, &mut Step { model, scratch, movers, directives, log });
     }
 
     /// The directives of these robots.
     pub(super) fn resolve(&mut self, movers: &mut [Mover]) -> Vec<Directive> {
-        self.step(movers).resolve();
+        self.step(movers, Reciprocal::resolve);
         self.directives.clone()
     }
 }

@@ -20,16 +20,16 @@ mod walls;
 use serde::{Deserialize, Serialize};
 
 use super::predict::{largest, range};
-use super::retreat::{Crowd, Retreats};
+use super::retreat::Retreats;
 use super::{Directive, Mover, Scratch, Step};
 use crate::event::Event;
-use crate::model::ReciprocalModel;
 use crate::report::Track;
 use encounter::LONGEST_HORIZON_S;
 pub(super) use passage::Turn;
 use passage::{Entrant, Entry, Follows, decide};
 use steering::Steering;
 pub(super) use steering::{Near, Sight};
+use stuck::leaders_of_jams;
 pub(super) use unhindered::Unhindered;
 use velocity::{Avoidance, MARGIN_M};
 
@@ -85,45 +85,38 @@ impl Reciprocal {
             }
         });
     }
-}
 
-impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
     /// One directive for each mover. Limits the preferred velocities of robots that wait before a passage or
     /// queue there, and replaces those of robots that let others out.
-    pub(super) fn resolve(&mut self) {
-        let Self { rules, state, scratch, movers, .. } = self;
-        state.blocked_steps.resize(movers.len(), 0);
-        state.avoidances.resize_with(movers.len(), Avoidance::default);
+    pub(super) fn resolve(&mut self, step: &mut Step) {
+        let Step { model, scratch, movers, .. } = step;
+        self.blocked_steps.resize(movers.len(), 0);
+        self.avoidances.resize_with(movers.len(), Avoidance::default);
         scratch.neighbours.sort(movers);
-        state.retreats.follow(&rules.retreats, movers, &scratch.neighbours);
-        self.hold_before_passages();
-        self.queue_before_passages();
-        self.let_out();
-        self.steer();
-        let leaders = self.leaders_of_jams();
-        for i in 0..self.movers.len() {
-            self.push(i, &leaders);
+        self.retreats.follow(&model.reciprocal.retreats, movers, &scratch.neighbours);
+        self.hold_before_passages(step);
+        queue_before_passages(step);
+        self.let_out(step);
+        self.steer(step);
+        let leaders = leaders_of_jams(step);
+        for i in 0..step.movers.len() {
+            self.push(step, i, &leaders);
         }
     }
 
-    fn make_room(&mut self, i: usize, blocker: usize) -> bool {
-        let (rules, neighbours) = (&self.rules.retreats, &self.scratch.neighbours);
-        self.state.retreats.make_room(i, blocker, &Crowd { rules, movers: self.movers, neighbours }, self.log)
-    }
-
-    fn turn(&self, i: usize) -> &Turn {
-        &self.scratch.turns[i]
+    fn make_room(&mut self, step: &mut Step, i: usize, blocker: usize) -> bool {
+        step.make_room(&mut self.retreats, &step.model.reciprocal.retreats, i, blocker)
     }
 
     /// Lets robots wait before narrow passages in which others have the right of way, and make room there.
-    fn hold_before_passages(&mut self) {
-        let (turns, entries) = (&mut self.scratch.turns, &mut self.state.entries);
-        entries.resize(self.movers.len(), Entry::default());
+    fn hold_before_passages(&mut self, step: &mut Step) {
+        let (turns, entries) = (&mut step.scratch.turns, &mut self.entries);
+        entries.resize(step.movers.len(), Entry::default());
         turns.clear();
-        turns.resize(self.movers.len(), Turn::default());
-        let at_passages = |(i, me): (usize, &Mover<'m>)| Entrant::new(i, me);
-        let entrants: Vec<Entrant> = self.movers.iter().enumerate().filter_map(at_passages).collect();
-        decide(&entrants, self.movers, entries, turns, self.rules.turn);
+        turns.resize(step.movers.len(), Turn::default());
+        let movers = step.movers.iter().enumerate();
+        let entrants: Vec<Entrant> = movers.filter_map(|(i, me)| Entrant::new(i, me)).collect();
+        decide(&entrants, step.movers, entries, turns, step.model.reciprocal.turn);
         for (entry, turn) in entries.iter_mut().zip(turns.iter()) {
             entry.is_granted = turn.rank.is_some() && turn.waits_for.is_none();
             entry.waited_steps = if turn.waits_for.is_some() { entry.waited_steps + 1 } else { 0 };
@@ -131,67 +124,52 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         let waiting = |entrant: &Entrant| Some((entrant.i, turns[entrant.i].waits_for?, entrant.ahead));
         let waiting: Vec<(usize, usize, f32)> = entrants.iter().filter_map(waiting).collect();
         for (i, first, ahead) in &waiting {
-            if self.state.entries[*i].waited_steps == 1 {
-                let robots = vec![self.movers[*first].robot, self.movers[*i].robot];
-                self.log.push(Event::ConflictStarted { robots });
+            if self.entries[*i].waited_steps == 1 {
+                let robots = vec![step.movers[*first].robot, step.movers[*i].robot];
+                step.log.push(Event::ConflictStarted { robots });
             }
-            let is_near = *ahead < self.movers[*i].radius + WAIT_AT_M + MAKE_ROOM_M;
-            if is_near && self.state.retreats.depth(*i) == 0 {
-                self.make_room(*first, *i);
+            let is_near = *ahead < step.movers[*i].radius + WAIT_AT_M + MAKE_ROOM_M;
+            if is_near && self.retreats.depth(*i) == 0 {
+                self.make_room(step, *first, *i);
             }
         }
-        self.make_room_in_bays(&entrants);
+        self.make_room_in_bays(step, &entrants);
         for (i, _, ahead) in waiting {
-            let me = &mut self.movers[i];
+            let me = &mut step.movers[i];
             let stops_in: f32 = (ahead - me.radius - WAIT_AT_M).max(0.0);
             me.preferred = me.preferred.clamp_length_max(me.brakes.speed_before(0.0, stops_in));
         }
     }
 
     /// Lets the first of two robots that come to a bay from both sides make room in it for the second.
-    fn make_room_in_bays(&mut self, entrants: &[Entrant]) {
+    fn make_room_in_bays(&mut self, step: &mut Step, entrants: &[Entrant]) {
         for me in entrants {
-            let Some(other) = entrants.iter().find(|other| me.makes_room_in_bay(other, self.movers)) else {
+            let Some(other) = entrants.iter().find(|other| me.makes_room_in_bay(other, step.movers)) else {
                 continue;
             };
-            let depth = |i: usize| self.state.retreats.depth(i);
+            let depth = |i: usize| self.retreats.depth(i);
             if depth(me.i) == 0 && depth(other.i) == 0 {
-                self.make_room(other.i, me.i);
+                self.make_room(step, other.i, me.i);
             }
-        }
-    }
-
-    /// Lets robots that may enter a passage in the same direction do so one after another, at a small
-    /// distance. All at once, they would press against one another at its mouth.
-    fn queue_before_passages(&mut self) {
-        for (i, turn) in self.scratch.turns.iter().enumerate() {
-            let Some(Follows { robot, gap }) = turn.follows else { continue };
-            let first = &self.movers[robot];
-            if first.stalled_steps > self.rules.holds_queue {
-                continue;
-            }
-            let allowed = first.velocity.length() + (gap - FOLLOWING_GAP_M) / CLOSE_UP_S;
-            let me = &mut self.movers[i];
-            me.preferred = me.preferred.clamp_length_max(allowed.max(LEAST_PREFERRED_MPS));
         }
     }
 
     /// Lets robots step back from robots beside them that try to make room for them and get nowhere, as in a
     /// corner.
-    fn let_out(&mut self) {
-        for (i, retreat) in self.state.retreats.iter() {
-            let (me, head) = (&self.movers[i], &self.movers[retreat.head]);
+    fn let_out(&self, step: &mut Step) {
+        for (i, retreat) in self.retreats.iter() {
+            let (me, head) = (&step.movers[i], &step.movers[retreat.head]);
             let away = head.position - me.position;
             let is_near = away.length() < me.radius + head.radius + LET_OUT_GAP_M;
-            if is_near && head.can_make_room && retreat.is_held_up(self.rules.let_out) {
-                self.movers[retreat.head].preferred = away.normalize_or_zero() * LET_OUT_SPEED * head.speed;
+            if is_near && head.can_make_room && retreat.is_held_up(step.model.reciprocal.let_out) {
+                step.movers[retreat.head].preferred = away.normalize_or_zero() * LET_OUT_SPEED * head.speed;
             }
         }
     }
 
     /// Directs all robots.
-    fn steer(&mut self) {
-        let Self { rules, state, scratch, movers, directives, .. } = self;
+    fn steer(&mut self, step: &mut Step) {
+        let Step { model, scratch, movers, directives, .. } = step;
         let Scratch { neighbours, unhindered, turns, directions, heads, near, sights, executor, .. } =
             &mut **scratch;
         let stopping = |mover: &Mover| 2.0 * mover.brakes.way(mover.speed);
@@ -203,21 +181,32 @@ impl<'m> Step<'_, 'm, ReciprocalModel, Reciprocal> {
         directions.extend(movers.iter().map(|mover| mover.preferred.normalize_or_zero()));
         heads.clear();
         heads.resize(movers.len(), None);
-        state.retreats.iter().for_each(|(i, retreat)| heads[i] = Some(retreat.head));
+        self.retreats.iter().for_each(|(i, retreat)| heads[i] = Some(retreat.head));
         near.resize_with(movers.len(), Near::default);
+        let rules = &model.reciprocal;
         let steering = Steering { rules, movers, neighbours, unhindered, turns, directions, heads, range };
         let part = executor.part(movers.len());
         sights.resize_with(movers.len().div_ceil(part), Sight::default);
-        let robots = directives.chunks_mut(part).zip(state.avoidances.chunks_mut(part));
+        let robots = directives.chunks_mut(part).zip(self.avoidances.chunks_mut(part));
         let robots = robots.zip(near.chunks_mut(part)).zip(sights).enumerate();
         executor.run(robots, |(at, (((directives, avoidances), near), sight))| {
             steering.steer(at * part, directives.iter_mut().zip(avoidances).zip(near), sight);
         });
     }
+}
 
-    /// The nearest robot in the way of a robot's preferred velocity.
-    fn robot_in_the_way(&self, i: usize) -> Option<usize> {
-        self.scratch.near[i].robot_in_the_way(i, self.movers, self.rules)
+/// Lets robots that may enter a passage in the same direction do so one after another, at a small
+/// distance. All at once, they would press against one another at its mouth.
+fn queue_before_passages(step: &mut Step) {
+    for (i, turn) in step.scratch.turns.iter().enumerate() {
+        let Some(Follows { robot, gap }) = turn.follows else { continue };
+        let first = &step.movers[robot];
+        if first.stalled_steps > step.model.reciprocal.holds_queue {
+            continue;
+        }
+        let allowed = first.velocity.length() + (gap - FOLLOWING_GAP_M) / CLOSE_UP_S;
+        let me = &mut step.movers[i];
+        me.preferred = me.preferred.clamp_length_max(allowed.max(LEAST_PREFERRED_MPS));
     }
 }
 
@@ -250,7 +239,7 @@ mod tests {
         assert!(matches!(queue[1], Directive::Follow { behind: RobotId(0), .. }), "{queue:?}");
         assert_eq!(queue[1].waits_for(), Some(RobotId(0)));
         assert!(queue[1].velocity().length() <= LEAST_PREFERRED_MPS, "{queue:?}");
-        let released = directives(Bench::new().rules.holds_queue + 1);
+        let released = directives(Bench::new().model.reciprocal.holds_queue + 1);
         assert!(
             matches!(released[1], Directive::Proceed(velocity) if velocity.length() > 0.5),
             "{released:?}"
@@ -261,7 +250,7 @@ mod tests {
     fn a_robot_that_comes_no_nearer_waits_for_the_robot_in_its_way() {
         let mut bench = Bench::new();
         let mut movers = [mover(0, [5.0, 5.0], [1.0, 0.0]), mover(1, [5.9, 5.05], [0.0, 0.0])];
-        movers[0].stalled_steps = bench.rules.stuck;
+        movers[0].stalled_steps = bench.model.reciprocal.stuck;
         let directives = bench.resolve(&mut movers);
         assert_eq!(directives[0].waits_for(), Some(RobotId(1)), "{directives:?}");
     }
@@ -285,10 +274,10 @@ mod tests {
                 [mover(0, [5.0, 5.0], [1.0, 0.0]), mover(1, [5.0 + 0.8 + gap, 5.0], [-1.0, 0.0])];
             movers[0].can_make_room = can_move;
             bench.state.retreats.begin_held_up(1, 0, Vector::new(5.0, 7.0), steps);
-            bench.step(&mut movers).let_out();
+            bench.step(&mut movers, |state, step| state.let_out(step));
             movers[0].preferred
         };
-        let held = Bench::new().rules.let_out + 1;
+        let held = Bench::new().model.reciprocal.let_out + 1;
         assert_eq!(preferred(0.05, held, true), Vector::new(-LET_OUT_SPEED * 2.0, 0.0));
         assert_eq!(preferred(0.05, held - 1, true), Vector::X, "not held up for long enough");
         assert_eq!(preferred(0.3, held, true), Vector::X, "not beside it");

@@ -3,7 +3,6 @@
 use super::super::{Step, wait_cycles};
 use super::Reciprocal;
 use crate::event::Event;
-use crate::model::ReciprocalModel;
 
 /// A robot asks a moving robot to make room only if the cosine between their directions is smaller than this.
 /// Robots in similar directions get on by themselves.
@@ -13,92 +12,96 @@ const ALONG: f32 = 0.3;
 /// of its preferred speed.
 const SLOWED: f32 = 0.9;
 
-impl Step<'_, '_, ReciprocalModel, Reciprocal> {
-    /// The robot with the best claim on each ring of stuck robots. On a ring, every robot is in the way of
-    /// another, and none can get on by itself. So the leader may push the next robot whatever their
-    /// directions.
-    pub(super) fn leaders_of_jams(&self) -> Vec<usize> {
-        let movers = &*self.movers;
-        let is_stuck =
-            |i: &usize| movers[*i].stalled_steps >= self.rules.stuck && movers[*i].wishes_to_move();
-        if !(0..movers.len()).any(|i| is_stuck(&i)) {
-            return Vec::new();
-        }
-        let in_the_way = |i: usize| Some(i).filter(is_stuck).and_then(|i| self.robot_in_the_way(i));
-        let waits_for: Vec<Option<usize>> = (0..movers.len()).map(in_the_way).collect();
-        let claim = |a: &usize, b: &usize| {
-            let longest_first = movers[*b].stalled_steps.cmp(&movers[*a].stalled_steps);
-            longest_first.then(movers[*a].priority.precedence(&movers[*b].priority))
-        };
-        let rings = wait_cycles(&waits_for);
-        rings.iter().filter_map(|ring| ring.iter().copied().min_by(claim)).collect()
-    }
-
+impl Reciprocal {
     /// Lets a robot ask a parked robot that slows it down to make room. Returns whether the parked robot
     /// does.
-    fn ask_parked(&mut self, i: usize) -> bool {
-        let blocker = self.parked_robot_that_slows(i);
-        let steps = &mut self.state.blocked_steps[i];
+    fn ask_parked(&mut self, step: &mut Step, i: usize) -> bool {
+        let blocker = parked_robot_that_slows(step, i);
+        let steps = &mut self.blocked_steps[i];
         *steps = if blocker.is_some() { *steps + 1 } else { 0 };
-        let is_due = *steps == 1 || steps.is_multiple_of(self.rules.ask_again);
-        let asked = blocker.filter(|blocker| is_due && !self.state.retreats.serves(i, *blocker));
-        asked.is_some_and(|blocker| self.make_room(i, blocker))
-    }
-
-    fn parked_robot_that_slows(&self, i: usize) -> Option<usize> {
-        let movers = &*self.movers;
-        let me = &movers[i];
-        let is_parked = |j: &usize| !movers[*j].wishes_to_move();
-        let is_slowed =
-            self.directives[i].velocity().dot(me.preferred) < SLOWED * me.preferred.length_squared();
-        let may_ask = is_slowed && self.turn(i).waits_for.is_none();
-        if !may_ask || !self.scratch.near[i].robots.iter().any(is_parked) {
-            return None;
-        }
-        self.robot_in_the_way(i).filter(is_parked)
+        let is_due = *steps == 1 || steps.is_multiple_of(step.model.reciprocal.ask_again);
+        let asked = blocker.filter(|blocker| is_due && !self.retreats.serves(i, *blocker));
+        asked.is_some_and(|blocker| self.make_room(step, i, blocker))
     }
 
     /// Lets a robot ask the robot in its way to make room: a parked one as soon as it slows the robot down,
     /// any other once the robot comes no nearer to its goal.
-    pub(super) fn push(&mut self, i: usize, leaders: &[usize]) {
-        if self.ask_parked(i) {
+    pub(super) fn push(&mut self, step: &mut Step, i: usize, leaders: &[usize]) {
+        if self.ask_parked(step, i) {
             return;
         }
-        let me = &self.movers[i];
+        let me = &step.movers[i];
         let is_due = me.stalled_steps > 0
-            && (me.stalled_steps.is_multiple_of(self.rules.ask_again)
-                || me.stalled_steps == self.rules.stuck);
-        if !is_due || !me.wishes_to_move() || self.turn(i).waits_for.is_some() {
+            && (me.stalled_steps.is_multiple_of(step.model.reciprocal.ask_again)
+                || me.stalled_steps == step.model.reciprocal.stuck);
+        if !is_due || !me.wishes_to_move() || step.scratch.turns[i].waits_for.is_some() {
             return;
         }
-        let Some(blocker) = self.robot_in_the_way(i) else { return };
-        if self.state.retreats.serves(i, blocker) {
+        let Some(blocker) = robot_in_the_way(step, i) else { return };
+        if self.retreats.serves(i, blocker) {
             return;
         }
-        if me.stalled_steps == self.rules.stuck {
-            self.log.push(Event::Deadlocked { robots: vec![me.robot, self.movers[blocker].robot] });
+        if me.stalled_steps == step.model.reciprocal.stuck {
+            step.log.push(Event::Deadlocked { robots: vec![me.robot, step.movers[blocker].robot] });
         }
-        if !self.movers[blocker].wishes_to_move() || leaders.contains(&i) || self.may_push(i, blocker) {
-            self.make_room(i, blocker);
+        if !step.movers[blocker].wishes_to_move() || leaders.contains(&i) || may_push(step, i, blocker) {
+            self.make_room(step, i, blocker);
         }
     }
+}
 
-    /// Whether a robot may ask another robot with a goal of its own to make room.
-    fn may_push(&self, i: usize, blocker: usize) -> bool {
-        let (me, other) = (&self.movers[i], &self.movers[blocker]);
-        let goes_after = match (self.turn(i).rank, self.turn(blocker).rank) {
-            (Some(mine), Some(its)) => its < mine,
-            _ => false,
-        };
-        let has_better_claim = || {
-            let longest_first = other.stalled_steps.cmp(&me.stalled_steps);
-            longest_first.then(me.priority.precedence(&other.priority)).is_lt()
-        };
-        me.stalled_steps >= self.rules.stuck
-            && !goes_after
-            && me.preferred.normalize_or_zero().dot(other.preferred.normalize_or_zero()) < ALONG
-            && has_better_claim()
+/// The robot with the best claim on each ring of stuck robots. On a ring, every robot is in the way of
+/// another, and none can get on by itself. So the leader may push the next robot whatever their
+/// directions.
+pub(super) fn leaders_of_jams(step: &Step) -> Vec<usize> {
+    let movers = &*step.movers;
+    let is_stuck =
+        |i: &usize| movers[*i].stalled_steps >= step.model.reciprocal.stuck && movers[*i].wishes_to_move();
+    if !(0..movers.len()).any(|i| is_stuck(&i)) {
+        return Vec::new();
     }
+    let in_the_way = |i: usize| Some(i).filter(is_stuck).and_then(|i| robot_in_the_way(step, i));
+    let waits_for: Vec<Option<usize>> = (0..movers.len()).map(in_the_way).collect();
+    let claim = |a: &usize, b: &usize| {
+        let longest_first = movers[*b].stalled_steps.cmp(&movers[*a].stalled_steps);
+        longest_first.then(movers[*a].priority.precedence(&movers[*b].priority))
+    };
+    let rings = wait_cycles(&waits_for);
+    rings.iter().filter_map(|ring| ring.iter().copied().min_by(claim)).collect()
+}
+
+fn parked_robot_that_slows(step: &Step, i: usize) -> Option<usize> {
+    let movers = &*step.movers;
+    let me = &movers[i];
+    let is_parked = |j: &usize| !movers[*j].wishes_to_move();
+    let is_slowed = step.directives[i].velocity().dot(me.preferred) < SLOWED * me.preferred.length_squared();
+    let may_ask = is_slowed && step.scratch.turns[i].waits_for.is_none();
+    if !may_ask || !step.scratch.near[i].robots.iter().any(is_parked) {
+        return None;
+    }
+    robot_in_the_way(step, i).filter(is_parked)
+}
+
+/// Whether a robot may ask another robot with a goal of its own to make room.
+fn may_push(step: &Step, i: usize, blocker: usize) -> bool {
+    let (me, other) = (&step.movers[i], &step.movers[blocker]);
+    let goes_after = match (step.scratch.turns[i].rank, step.scratch.turns[blocker].rank) {
+        (Some(mine), Some(its)) => its < mine,
+        _ => false,
+    };
+    let has_better_claim = || {
+        let longest_first = other.stalled_steps.cmp(&me.stalled_steps);
+        longest_first.then(me.priority.precedence(&other.priority)).is_lt()
+    };
+    me.stalled_steps >= step.model.reciprocal.stuck
+        && !goes_after
+        && me.preferred.normalize_or_zero().dot(other.preferred.normalize_or_zero()) < ALONG
+        && has_better_claim()
+}
+
+/// The nearest robot in the way of a robot's preferred velocity.
+fn robot_in_the_way(step: &Step, i: usize) -> Option<usize> {
+    step.scratch.near[i].robot_in_the_way(i, step.movers, &step.model.reciprocal)
 }
 
 #[cfg(test)]
