@@ -51,8 +51,7 @@ const RATIO: &str = "points per rescuee";
 #[rustfmt::skip]
 const DECLARATIONS: &[Declaration] = &[
     per_task("rescuees", "", |r| Some(f64::from(r.rescued())), |t| Some(f64::from(t.rescued)))
-        .primary().in_figure("rescuees").higher()
-        .means("Rescuees delivered home or to a rest place."),
+        .primary().in_figure("rescuees").higher().means("Rescuees delivered home or to a rest place."),
     per_task("energy_per_rescuee", RATIO, |r| ratio(r.energy(), r.rescued()), |t| ratio(t.energy, t.rescued))
         .primary().of_sums("energy").in_figure("energy per rescuee").lower()
         .means("Energy spent, divided by the rescuees delivered; empty where nobody was rescued. The total \
@@ -85,8 +84,7 @@ const DECLARATIONS: &[Declaration] = &[
         .means("Times a robot gave up on a rescuee or a place because no way leads there."),
     whole("errands_done", "", |r| Some(f64::from(r.counts.errands_done))).higher()
         .means("Places of errands that were reached."),
-    whole("time", "s", |r| Some(r.time_s))
-        .means("Simulated time when the trial was over."),
+    whole("time", "s", |r| Some(r.time_s)).means("Simulated time when the trial was over."),
     per_task("secured", "", |r| Some(f64::from(r.secured())), |t| Some(f64::from(t.secured))).higher()
         .means("Rescuees that were taken on board."),
     per_task("energy", POINTS, |r| Some(r.energy()), |t| Some(t.energy))
@@ -96,25 +94,19 @@ const DECLARATIONS: &[Declaration] = &[
             went on without them."),
     per_task("hp", POINTS, |r| Some(r.hp()), |t| Some(t.hp))
         .means("HP lost by all robots; of a task, by its groups."),
-    whole("hp.ungrouped", POINTS, |r| Some(r.ungrouped_hp))
-        .means("HP lost by robots that were in no group."),
+    whole("hp.ungrouped", POINTS, |r| Some(r.ungrouped_hp)).means("HP lost by robots that were in no group."),
     whole("turned_back", "", |r| Some(f64::from(r.counts.turned_back)))
         .means("Times a robot left for its rest place."),
-    whole("stranded", "", |r| Some(r.stranded() as f64)).lower()
-        .means("Robots that ended with no energy."),
-    whole("disabled", "", |r| Some(r.disabled() as f64)).lower()
-        .means("Robots that ended with no HP."),
-    whole("distance", "m", |r| Some(r.distance_m()))
-        .means("Way travelled, summed over all robots."),
+    whole("stranded", "", |r| Some(r.stranded() as f64)).lower().means("Robots that ended with no energy."),
+    whole("disabled", "", |r| Some(r.disabled() as f64)).lower().means("Robots that ended with no HP."),
+    whole("distance", "m", |r| Some(r.distance_m())).means("Way travelled, summed over all robots."),
 ];
 
 /// The metrics of trials in which the base goes by reports.
 #[rustfmt::skip]
 const OF_REPORTS: &[Declaration] = &[
-    whole("reports_heard", "", belief::reports_heard)
-        .means("Reports of levels that the base heard."),
-    whole("liars", "", belief::liars)
-        .means("Robots that told a lie, sooner or later."),
+    whole("reports_heard", "", belief::reports_heard).means("Reports of levels that the base heard."),
+    whole("liars", "", belief::liars).means("Robots that told a lie, sooner or later."),
     whole("level_mae", "%", belief::level_mae).lower()
         .means("How far energy and health as they were believed are from the truth, on average over members \
             and decisions: by the estimator of the policy, or else as said last."),
@@ -126,11 +118,9 @@ const OF_REPORTS: &[Declaration] = &[
     whole("trust_auc", "", belief::trust_auc).higher()
         .means("How often an honest robot has more trust than a liar, ties by half; empty without an \
             estimator, liars or honest robots."),
-    whole("trust_brier", "", belief::trust_brier).lower()
-        .means("The Brier score of trust as the probability that a robot is honest; empty without an \
-            estimator."),
-    whole("trust_log", "nats", belief::trust_log).lower()
-        .means("The logarithmic score of the same."),
+    whole("trust_brier", "", belief::trust_brier).lower().means("The Brier score of trust as the probability \
+        that a robot is honest; empty without an estimator."),
+    whole("trust_log", "nats", belief::trust_log).lower().means("The logarithmic score of the same."),
     whole("trust_ece", "", belief::trust_ece).lower()
         .means("The expected calibration error of the same, in ten bins."),
     whole("rounds_to_detect", "", belief::rounds_to_detect).lower()
