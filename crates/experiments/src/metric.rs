@@ -41,6 +41,7 @@ struct Declaration {
     direction: Direction,
     /// For a cost per rescuee, the metric of the cost.
     cost: Option<&'static str>,
+    is_censored: bool,
     scope: Scope,
 }
 
@@ -100,6 +101,13 @@ const DECLARATIONS: &[Declaration] = &[
     whole("stranded", "", |r| Some(r.stranded() as f64)).lower().means("Robots that ended with no energy."),
     whole("disabled", "", |r| Some(r.disabled() as f64)).lower().means("Robots that ended with no HP."),
     whole("distance", "m", |r| Some(r.distance_m())).means("Way travelled, summed over all robots."),
+    whole("time_to_last", "s", |r| r.delivered_s.last().copied())
+        .means("Time of the last delivery; empty where nobody was rescued."),
+    whole("time_to_half", "s", |r| r.time_to_share_s(0.5)).censored().lower()
+        .means("Time by which half of all people had been delivered; empty where they never were. Then it is \
+            censored: there is no mean over the trials."),
+    whole("time_to_90", "s", |r| r.time_to_share_s(0.9)).censored().lower()
+        .means("The same of nine tenths of all people."),
 ];
 
 /// The metrics of trials in which the base goes by reports.
@@ -139,6 +147,7 @@ const fn whole(name: &'static str, unit: &'static str, value: Value) -> Declarat
         is_primary: false,
         direction: Direction::Neither,
         cost: None,
+        is_censored: false,
         scope: Scope::Whole(value),
     }
 }
@@ -158,6 +167,10 @@ impl Declaration {
 
     const fn of_sums(self, cost: &'static str) -> Self {
         Self { cost: Some(cost), ..self }
+    }
+
+    const fn censored(self) -> Self {
+        Self { is_censored: true, ..self }
     }
 
     const fn higher(self) -> Self {
@@ -185,7 +198,7 @@ impl Declaration {
     }
 
     fn metric(self, part: Option<&str>, source: Source, words: &Words) -> Metric {
-        let Self { name, meaning, unit, figure, is_primary, direction, cost, .. } = self;
+        let Self { name, meaning, unit, figure, is_primary, direction, cost, is_censored, .. } = self;
         let named = |name: &str| part.map_or(name.to_owned(), |part| format!("{name}.{part}"));
         Metric {
             name: named(&words.metric(name)),
@@ -198,6 +211,7 @@ impl Declaration {
             direction,
             declared: name,
             cost,
+            is_censored,
             part: part.unwrap_or_default().to_owned(),
             source,
         }
@@ -243,6 +257,8 @@ pub struct Metric {
     /// Its name in the standard words.
     standard: String,
     cost: Option<&'static str>,
+    /// Whether a trial without a value has one that is larger than all that can be seen.
+    pub is_censored: bool,
     part: String,
     source: Source,
 }

@@ -99,6 +99,8 @@ pub struct Metrics {
     pub rounds: Vec<RoundRecord>,
     /// Rounds that ended before the trial did.
     pub completed_rounds: u32,
+    /// When each rescuee was delivered, in seconds, ascending.
+    pub delivered_s: Vec<f64>,
     /// How often things happened.
     pub counts: Counts,
     /// Robots that were cut off, in the order in which each was cut off first.
@@ -165,6 +167,7 @@ impl Metrics {
                 }
                 Event::Delivered { robot, rescuee, .. } => {
                     let task = world.rescuees[rescuee.index()].task;
+                    self.delivered_s.push(time_s);
                     self.tasks[task.index()].rescued += 1;
                     self.current(task).into_iter().for_each(|round| round.rescued += 1);
                     self.note_member(*robot, |member| member.rescued += 1);

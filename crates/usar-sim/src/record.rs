@@ -206,6 +206,12 @@ pub struct TrialRecord {
     pub time_s: f64,
     /// Results and costs of each task, in the order of the table of tasks.
     pub tasks: Vec<TaskRecord>,
+    /// People of the scenario: those who were there at the start, and those who were to appear.
+    #[serde(default)]
+    pub people: u32,
+    /// When each rescuee was delivered, in seconds, ascending.
+    #[serde(default)]
+    pub delivered_s: Vec<f64>,
     /// Energy spent outside any group, in the unit of the scenario's costs.
     pub ungrouped_energy: f64,
     /// HP lost outside any group, in the unit of the scenario's costs.
@@ -283,6 +289,12 @@ impl TrialRecord {
     /// Rescuees delivered, all tasks.
     pub fn rescued(&self) -> u32 {
         self.tasks.iter().map(|task| task.totals.rescued).sum()
+    }
+
+    /// When so large a share of all people had been delivered, in seconds; `None` if they never were.
+    pub fn time_to_share_s(&self, share: f64) -> Option<f64> {
+        let least = (share * f64::from(self.people)).ceil().max(1.0) as usize;
+        self.delivered_s.get(least - 1).copied()
     }
 
     /// Energy spent by the whole team, in the unit of the scenario's costs.

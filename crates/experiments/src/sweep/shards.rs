@@ -67,20 +67,10 @@ fn check_program(path: &Path, there: &Manifest, policies: &[PolicySpec]) -> Resu
     if there == here {
         return Ok(());
     }
-    let is_same_engine = (&that.version, &that.source) == (&this.version, &this.source);
-    let sources = if is_same_engine {
-        [&that, &this].map(|program| program.policies.join(", "))
-    } else {
-        [that.source, this.source]
-    };
-    let [there, here] = sources;
-    Err(Failure::input(format!(
-        "{} is of usar {} with source {there}; this is {} with source {here}: merge with the program that \
-         ran the shards",
-        path.display(),
-        that.version,
-        this.version,
-    )))
+    let path = path.display();
+    refuse!(
+        "{path} is of a program with {there}; this has {here}: merge with the program that ran the shards"
+    )
 }
 
 /// Refuses shards of different sweeps.

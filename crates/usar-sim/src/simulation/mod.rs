@@ -281,6 +281,8 @@ impl Simulation {
             tasks: tasks
                 .map(|(task, totals)| TaskRecord { task: task.asked.name.clone(), totals: *totals })
                 .collect(),
+            people: model.rescuees.len() as u32,
+            delivered_s: metrics.delivered_s,
             ungrouped_energy: metrics.ungrouped[0],
             ungrouped_hp: metrics.ungrouped[1],
             completed_rounds: metrics.completed_rounds,
