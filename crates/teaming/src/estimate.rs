@@ -36,6 +36,11 @@ pub trait Estimator: Send + Sync {
         self.estimate(question)
     }
 
+    /// Whether it judges trust alone: its levels are those that were said last.
+    fn judges_trust_only(&self) -> bool {
+        false
+    }
+
     /// The least number of raters that each robot must have for it to hold what it promises.
     fn least_raters(&self) -> Option<u32> {
         None

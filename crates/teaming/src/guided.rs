@@ -48,6 +48,14 @@ impl Driver for Guided {
         self.estimator.it.least_raters().max(self.rule.it.least_raters())
     }
 
+    fn idle_part(&self) -> Option<String> {
+        let is_idle = self.trust_use == TrustUse::Ignore && self.estimator.it.judges_trust_only();
+        let name = &self.estimator.label;
+        is_idle.then(|| {
+            format!("{name} judges trust only, and nothing uses it: add `| Discount` or `| Exclude`")
+        })
+    }
+
     fn labelled(&self, label: &str) -> Option<Arc<dyn Driver>> {
         let (label, rule) = (label.to_owned(), self.rule.clone().labelled(label));
         Some(Arc::new(Self { label, rule, ..self.clone() }))

@@ -45,6 +45,11 @@ pub trait Driver: Send + Sync {
         None
     }
 
+    /// What of it does nothing, in a sentence.
+    fn idle_part(&self) -> Option<String> {
+        None
+    }
+
     /// A text that changes whenever its answers may change. Results are kept as long as it stays. `None` is
     /// for a driver that is known by the program that has it, see `from_sources` of its kind.
     fn fingerprint(&self) -> Option<String> {

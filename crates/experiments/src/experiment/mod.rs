@@ -4,6 +4,7 @@ mod again;
 mod cost;
 mod file;
 mod grid;
+mod idle;
 mod keep;
 mod plan;
 mod policy;

@@ -42,6 +42,10 @@ impl Beta {
 }
 
 impl Estimator for Beta {
+    fn judges_trust_only(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
         let outcomes = Outcomes::of(question, evidence, self.tolerance);

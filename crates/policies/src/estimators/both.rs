@@ -46,6 +46,10 @@ impl Estimator for Both {
         self.joined(question, Some(truth))
     }
 
+    fn judges_trust_only(&self) -> bool {
+        self.level.it.judges_trust_only()
+    }
+
     fn least_raters(&self) -> Option<u32> {
         self.level.it.least_raters().max(self.trust.it.least_raters())
     }

@@ -37,6 +37,10 @@ impl Brs {
 }
 
 impl Estimator for Brs {
+    fn judges_trust_only(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
         let outcomes = Outcomes::of(question, evidence, TOLERANCE);

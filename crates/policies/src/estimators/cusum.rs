@@ -41,6 +41,10 @@ impl Cusum {
 }
 
 impl Estimator for Cusum {
+    fn judges_trust_only(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
         let Self { k, h } = *self;

@@ -36,6 +36,10 @@ pub fn kind() -> EstimatorKind {
 }
 
 impl Estimator for Hmm {
+    fn judges_trust_only(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
         let rounds = by_question_round(question, evidence);

@@ -45,6 +45,10 @@ impl Rne {
 }
 
 impl Estimator for Rne {
+    fn judges_trust_only(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, question: &Question) -> Result<Vec<Estimate>, PolicyError> {
         let Some(evidence) = &question.evidence else { return last_said(question) };
         let weights = NeedWeights::new(scaled_weights(question)).map_err(PolicyError::Options)?;

@@ -108,7 +108,7 @@ impl TrialArguments {
         let source = self.source(file, registry)?;
         let policy = self.policy.as_deref().or(otherwise).unwrap_or(&source.first_policy);
         let trial = self.trial(file, &source, policy, registry)?;
-        if let Some(doubt) = trial.spec.doubt(&trial.scenario) {
+        for doubt in trial.spec.doubts(&trial.scenario) {
             tell(format_args!("note: {}: {doubt}", file.display()));
         }
         Ok(trial)
