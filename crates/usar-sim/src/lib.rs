@@ -18,9 +18,9 @@
 //! One seed gives one result, bit for bit. Random streams are identified by trial, purpose and entity;
 //! transcendental functions come from `libm`; and nothing iterates over a hash map or reads a clock.
 
-/// Number of the program's bits. Whoever changes what comes out of a trial raises it: trials of one number are
-/// the same for the same scenario, policy and seed, and results that name another number tell of an older
-/// program. A test holds it against golden outcomes.
+/// Number of the program's bits. Whoever changes what comes out of a trial raises it: trials of one number
+/// are the same for the same scenario, policy and seed, and results that name another number tell of an
+/// older program. A test holds it against golden outcomes.
 pub const BITS: u32 = 12;
 
 /// Number of the way in which the state is hashed. Whoever changes hashes and nothing that comes out of a

@@ -27,7 +27,7 @@ struct Golden {
     name: String,
     /// Hash of the last state.
     state: String,
-    /// Hash of the record, of all events, and of the poses every ten seconds.
+    /// Hash of the results, of all events, and of the poses every ten seconds.
     outcome: String,
 }
 
@@ -149,8 +149,9 @@ fn golden(path: &Path, policy: &str, more: Option<&str>) -> Golden {
                     .for_each(|robot| writeln!(story, "{:?}", robot.position).expect("memory"));
             }
         });
-    let state = record.state_hash.clone();
-    let record = TrialRecord { state_hash: String::new(), ..record };
-    story += &serde_json::to_string(&record).expect("a record");
+    let TrialRecord { state_hash: state, status, time_s, tasks, rounds, robots, counts, .. } = record;
+    let spent = [record.ungrouped_energy, record.ungrouped_hp];
+    let summary = (status, time_s, tasks, rounds, robots, counts, spent);
+    story += &serde_json::to_string(&summary).expect("a summary");
     Golden { name: scenario.name.clone(), state, outcome: format!("{:032x}", xxh3_128(story.as_bytes())) }
 }

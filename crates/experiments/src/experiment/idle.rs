@@ -73,6 +73,9 @@ fn capacity(scenario: &Scenario) -> Option<String> {
     let message_s = f64::from(medium.bytes) * 8.0 / (1000.0 * medium.kbps?) + medium.overhead_ms / 1000.0;
     let all_s = message_s * f64::from(scenario.robots());
     (all_s > every_s).then(|| {
-        format!("a report of all robots takes {all_s:.1} s, and they report every {every_s} s: it comes later each time")
+        format!(
+            "a report of all robots takes {all_s:.1} s, and they report every {every_s} s: it comes later \
+             each time"
+        )
     })
 }

@@ -82,12 +82,13 @@ pub(super) fn follow(
     (guesses, passes)
 }
 
-/// What a round makes of the levels: they fall as those of the mates did. A rest fills them, or the lowest
-/// of them.
+/// What a round makes of the levels: they fall as those of the mates did. Where no mate can tell, they stay,
+/// as unsure as those of which nothing is known. A rest fills them, or the lowest of them.
 fn predict(guesses: &mut [Guess], seen: &Seen<'_>, q: f64, rest: Rest) {
+    let unsure = if seen.used.is_some() { q } else { UNKNOWN.sd * UNKNOWN.sd };
     for (level, guess) in guesses.iter_mut().enumerate() {
-        let used = seen.used.get(level).copied().unwrap_or_default();
-        *guess = Guess { x: guess.x - used, p: guess.p + q, ..*guess };
+        let used = seen.used.as_ref().and_then(|used| used.get(level)).copied().unwrap_or_default();
+        *guess = Guess { x: guess.x - used, p: guess.p + unsure, ..*guess };
     }
     if seen.rested {
         let lower = |low: usize, level: usize| if guesses[level].x < guesses[low].x { level } else { low };
@@ -126,7 +127,7 @@ mod tests {
 
     fn seen(said: Option<f64>, used: f64, rested: bool) -> Seen<'static> {
         let said = said.map(|energy| Said { levels: vec![energy, 90.0].leak(), sd: &[0.0; 2] });
-        Seen { said, used: vec![used, 0.0], rested }
+        Seen { said, used: Some(vec![used, 0.0]), rested }
     }
 
     /// The guess of energy after each round, and the passes of energy alone.
@@ -197,6 +198,16 @@ mod tests {
         assert!((failed - 3.0).abs() < 1e-12, "{failed}");
         let (found, failed) = energy(0);
         assert!(found[0] > 54.0 && (failed - 4.0).abs() < 1e-12, "{found:?} {failed}");
+    }
+
+    /// Nobody came back who could tell what the round cost: a fall of 35 points passes.
+    #[test]
+    fn what_no_mate_can_tell_is_unknown_and_not_nothing() {
+        let fall = |used| {
+            let rounds = [seen(Some(75.0), 0.0, false), Seen { used, ..seen(Some(40.0), 0.0, false) }];
+            follow(&question(Rest::All), &rounds, &RULES, true).1.bad
+        };
+        assert!(fall(None) < 0.5 && fall(Some(vec![0.0; 2])) > 0.5);
     }
 
     /// Energy 63 and health 90 after a round: only energy is filled. Nothing is heard.

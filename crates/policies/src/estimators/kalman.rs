@@ -1,12 +1,13 @@
 //! `Kalman(q, r, gate, restart)`: a Kalman filter with a gate for each level of each robot.
 //!
 //! A level is expected to fall by what the robot's fit group-mates said that they spent: `x- = x - used`,
-//! `P- = P + q`; after a rest `x- = 100`, `P- = q`; at first `x-` and `P-` are what the base expects. With
-//! `S = P- + r`, a report `z` fails if `(z - x-)^2 / S > gate`, and changes nothing then; else `K = P- / S`,
-//! `x = x- + K (z - x-)`, `P = (1 - K) P-`. The `restart`-th report in a row that fails begins the level
-//! anew: `x = z`, `P = r`, as a track is begun by a first measurement (3.2.5 there); it counts as failed. So
-//! a robot that lost much at once, by something that its mates did not meet, is believed again. Trust is the mean of a Beta distribution of passes and failures
-//! of all levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
+//! `P- = P + q`; where no mate can tell, `x- = x`, `P- = P + 400`; after a rest `x- = 100`, `P- = q`; at
+//! first `x-` and `P-` are what the base expects. With `S = P- + r`, a report `z` fails if `(z - x-)^2 / S >
+//! gate`, and changes nothing then; else `K = P- / S`, `x = x- + K (z - x-)`, `P = (1 - K) P-`. The
+//! `restart`-th report in a row that fails begins the level anew: `x = z`, `P = r`, as a track is begun by
+//! its first measurement; it counts as failed. So a robot that lost much at once, by something that its
+//! mates did not meet, is believed again. Trust is the mean of a Beta distribution of passes and failures of
+//! all levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
 //! chi-square distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with
 //! Applications to Tracking and Navigation*, 5.4).
 

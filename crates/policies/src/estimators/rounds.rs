@@ -13,8 +13,8 @@ pub(super) struct Seen<'e> {
     /// then.
     pub(super) said: Option<Said<'e>>,
     /// The median of what its fit group-mates said that they spent of each level in the round before, in
-    /// percent points; empty where nobody can tell, as in the first round and for a robot that stayed home.
-    pub(super) used: Vec<f64>,
+    /// percent points; none where nobody can tell. Nothing in the first round and at home.
+    pub(super) used: Option<Vec<f64>>,
     /// Whether it rested since the question before.
     pub(super) rested: bool,
 }
@@ -32,14 +32,15 @@ pub(super) struct Said<'e> {
 pub(super) fn rounds<'e>(question: &Question, evidence: &'e Evidence) -> Vec<Vec<Seen<'e>>> {
     let said = SaidRounds::new(question, evidence);
     let count = question.history.len() + 1;
-    let mut seen = vec![vec![Seen::default(); count]; question.members.len()];
+    let nothing = Seen { used: Some(Vec::new()), ..Seen::default() };
+    let mut seen = vec![vec![nothing; count]; question.members.len()];
     let mut takes_part = vec![vec![false; count]; question.members.len()];
     for (before, round) in question.history.iter().enumerate() {
         for used in said.used(round) {
             let Some(member) = member_of(question, used.robot) else { continue };
             let next = &mut seen[member][before + 1];
             takes_part[member][before + 1] = true;
-            next.used = used.points.unwrap_or_default();
+            next.used = used.points;
             next.rested = said.entry(used.robot, round.round).is_some_and(|entry| entry.rested);
         }
     }

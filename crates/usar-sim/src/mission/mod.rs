@@ -90,8 +90,8 @@ impl Mission {
     }
 
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
-    /// round waits for its assignment: see [`Mission::question`]. With `is_done`, nobody is left to bring home
-    /// and no event is to come. Returns the robots that the base restocks.
+    /// round waits for its assignment: see [`Mission::question`]. With `is_done`, nobody is left to bring
+    /// home and no event is to come. Returns the robots that the base restocks.
     pub(crate) fn prepare(&mut self, is_done: bool, scene: &mut Scene) -> Vec<RobotId> {
         self.crew.look_for_guides(&scene.model.mission, &scene.beliefs.team);
         if !scene.model.errands.is_empty() {

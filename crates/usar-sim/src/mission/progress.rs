@@ -160,8 +160,8 @@ impl Crew {
         robots.iter().filter(stands).count() as u32
     }
 
-    /// Whether nothing can happen any more in a mission: no round can begin, no event is to come, and no robot
-    /// gets anywhere.
+    /// Whether nothing can happen any more in a mission: no round can begin, no event is to come, and no
+    /// robot gets anywhere.
     pub(super) fn is_at_a_standstill(&self, scene: &Scene) -> bool {
         !scene.awaits_event && self.all_stay(scene) && !self.can_begin_round(scene)
     }
