@@ -9,6 +9,7 @@ use crate::{scenario, trial};
 /// The gate through which robot 0 went out closes behind it. In the other door stands a keeper that has
 /// nothing to do and, without a rule of right of way, makes no room: robot 0 pushes against it for good.
 const KEEPER: &str = r#"duration_s: 300.0, arena_m: (40.0, 40.0), conflicts: (resolver: None),
+    mission: (ends: AtDuration),
     roles: [(name: "runner", observing_m: 1.0, resources: 10), (name: "seer", observing_m: 3.0),
             (name: "keeper", mass_kg: 500.0)],
     team: [

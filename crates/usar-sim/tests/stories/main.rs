@@ -1,6 +1,7 @@
 //! Small worlds, each with a story that once ended badly, in one test binary.
 
 mod contacts;
+mod ending;
 mod held_up;
 mod radii;
 mod rooms;

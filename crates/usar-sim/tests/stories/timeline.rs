@@ -8,7 +8,7 @@ use usar_sim::simulation::Simulation;
 use crate::scenario;
 
 const WORLD: &str = r#"
-    duration_s: 120, arena_m: (40, 40),
+    duration_s: 120, arena_m: (40, 40), mission: (ends: AtDuration),
     team: [(role: "robot", count: 4, center: (20, 5), width_m: 6, body: (observing_m: 5, sensing_m: 14))],
     tasks: [
         (name: "far", difficulty: 2, center: (10, 34), size_m: (4, 2), grid: (3, 2), rest: (8, 12)),
