@@ -50,7 +50,7 @@ fn at_duration_the_trial_goes_on_as_it_did_before() {
 
 #[test]
 fn a_mission_waits_for_what_is_to_come() {
-    let (record, told) = told("", r#"(at_s: 120, event: RescueesAppear(task: "far", count: 2))"#);
+    let (record, told) = told("", r#"(at_s: 120, event: RescueesAppear(task: "far", grid: (2, 1)))"#);
     assert_eq!((&record.status, record.rescued()), (&Status::Finished, 10));
     assert!(record.time_s > 120.0 && rounds(&told) > 1);
 }
