@@ -9,10 +9,10 @@ use scenario::Scenario;
 use teaming::{Asked, Assignment, Question, Truth};
 use usar_sim::hash::PARTS;
 use usar_sim::record::TrialRecord;
-use usar_sim::robot::HP;
+use usar_sim::robot::{ENERGY, HP};
 use usar_sim::simulation::{Advance, Simulation};
 
-use crate::support::{paper_with, policy};
+use crate::support::{paper_with, policy, root};
 
 /// paper.ron with these sections in addition.
 fn paper_and(sections: &str) -> Scenario {
@@ -420,4 +420,72 @@ fn honest_robots_that_are_left_at_home_are_counted() {
     let metrics = Catalogue::of(&scenario);
     let value = metrics[metrics.named("false_exclusions").unwrap()].value(&record).unwrap();
     assert!((value - honest as f64).abs() < 1e-12, "{value} {honest}");
+}
+
+/// The mean delay of what each robot sent to the base, by id, in seconds.
+fn delays_s(record: &TrialRecord) -> Vec<f64> {
+    let links = &record.heard.as_ref().unwrap().links;
+    links.iter().filter(|link| link.to.is_none()).filter_map(|link| link.delay_s).collect()
+}
+
+#[test]
+fn on_a_slow_channel_no_robot_speaks_first_because_of_its_id() {
+    let slow = run(&paper_and("reports: (every_s: 10), medium: (kbps: 5, at_home: Medium),"), "DIS", 1);
+    let delays = delays_s(&slow);
+    assert_eq!(delays.len(), 12);
+    let [least, most] =
+        [delays.iter().copied().fold(f64::MAX, f64::min), delays.iter().copied().fold(0.0, f64::max)];
+    assert!(
+        most < 1.5 * least,
+        "the last of twelve waits no longer than the first, in the long run: {delays:?}"
+    );
+}
+
+/// Robot 2 and robot 9 each say how they are under the name of robot 5.
+#[test]
+fn who_speaks_under_the_name_of_another_is_heard_after_it_whatever_its_id() {
+    for liar in [2, 9] {
+        let lies = format!(
+            "deceit: [(who: Robots([{liar}]), lie: Exaggerate(by: 1), on: [Energy]), \
+             (who: Robots([{liar}]), lie: Impersonate(as: 5))],"
+        );
+        let record = run(&paper_and(&lies), "DIS", 1);
+        let asked = &record.decisions[2].question;
+        let of = |id: u32| asked.members.iter().find(|member| member.id == id).unwrap().levels[ENERGY];
+        assert_eq!(of(5), of(liar), "{liar}");
+        assert_eq!(of(5), Some(100.0));
+    }
+}
+
+/// With the rows of the team the other way round, other robots have the low ids: rescuees are distributed as
+/// before.
+#[test]
+fn nothing_depends_on_who_has_the_low_ids() {
+    const LIES: &str = "reports: (every_s: 10), medium: (range_m: 60, kbps: 2, delay_s: 0.5),
+        deceit: [(who: Count(3), lie: Exaggerate(by: 0.6), on: [Energy, Hp]),
+                 (who: Count(2), lie: Flip)],\n)";
+    for world in ["aftershocks", "avalanche", "convoy", "flood", "tunnel"] {
+        let path = root().join(format!("scenarios/trust/{world}.ron"));
+        let mut text = std::fs::read_to_string(&path).unwrap();
+        text.truncate(text.trim_end().len() - 1);
+        let scenario = Scenario::parse(&(text + LIES), &path).unwrap();
+        let mut file = (*scenario).clone();
+        file.team.reverse();
+        assert!(file.team.len() > 1, "{world}: there are two rows to turn round");
+        let rescued = |scenario: &Scenario| -> Vec<f64> {
+            let trial = |seed| {
+                let trial = Simulation::new(scenario, seed).unwrap();
+                f64::from(trial.run(&mut *policy("HP_DIS <- Wmsr"), |_, _, _| {}).rescued())
+            };
+            (1..=16).into_par_iter().map(trial).collect()
+        };
+        let [there, renumbered] = [rescued(&scenario), rescued(&file.try_into().unwrap())];
+        let moments = [&there, &renumbered].map(|values| {
+            let mean = values.iter().sum::<f64>() / 16.0;
+            (mean, values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / 15.0)
+        });
+        let [(a, of_a), (b, of_b)] = moments;
+        let error = ((of_a + of_b) / 16.0).sqrt();
+        assert!((a - b).abs() <= 4.0 * error, "{world}: {a:.1} and {b:.1} rescuees, by {error:.1}");
+    }
 }
