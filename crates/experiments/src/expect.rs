@@ -10,8 +10,11 @@ mod parse;
 
 use serde::Serialize;
 use statistics::cautious;
+use statistics::comparison::{Pairs, Standing};
 use statistics::share::clopper_pearson;
 use statistics::stopping::FIRST_LOOK;
+
+use crate::comparison::{Cell, Trials};
 
 pub use parse::{Bad, expectations, parse};
 
@@ -104,6 +107,8 @@ pub enum Verdict {
     Holds,
     /// It does not hold.
     Fails,
+    /// Both policies are the same in all trials: nothing is tested.
+    Same,
     /// The trials do not decide.
     Undecided,
 }
@@ -119,7 +124,7 @@ pub struct Judgement {
     pub observed: Option<f64>,
     /// Its interval.
     pub interval: Option<[f64; 2]>,
-    /// What an interval needs, if there is none yet.
+    /// Why there is no interval of a difference.
     pub needs: Option<String>,
 }
 
@@ -129,53 +134,63 @@ pub fn looks(most: u32) -> Vec<u32> {
     doubled.take_while(|look| *look < most).chain([most]).collect()
 }
 
-/// Judges an expectation by values of trials. `value(policy, metric)` has one value for each trial, `None`
-/// where the metric is undefined. `intervals` is the number of intervals that share the allowed error: looks
-/// times cases times expectations. `is_last` says whether this is the last look.
+/// Judges an expectation by the trials of a case. `intervals` is the number of intervals that share the
+/// allowed error: looks times cases times expectations. `is_last` says whether this is the last look.
 pub fn judge(
     expected: &Expected,
-    value: impl Fn(usize, usize) -> Vec<Option<f64>>,
+    trials: &Trials,
+    case: usize,
     intervals: usize,
     is_last: bool,
 ) -> Judgement {
-    let confidence = 1.0 - (1.0 - expected.confidence) / intervals.max(1) as f64;
     match expected.what {
         Expectation::Share { policy, metric, relation, value: bound, share } => {
-            let values = value(policy, metric);
             // An undefined metric counts as a trial that does not fulfil the relation.
-            let held = values.iter().filter(|value| value.is_some_and(|value| relation.holds(value, bound)));
-            judge_share(held.count(), values.len(), share, confidence, is_last)
+            let holds = |value: &Option<f64>| value.is_some_and(|value| relation.holds(value, bound));
+            let values = trials.in_each(((case, policy), metric));
+            let held = values.iter().filter(|value| holds(value)).count();
+            judge_share(held, values.len(), share, confidence(expected, intervals), is_last)
         }
-        Expectation::Above { metric, policies, by } => {
-            let differences = differences(&value, metric, policies);
-            judge_mean(&differences, confidence, |[low, high]| match (low > by, high < by) {
-                (true, _) => Verdict::Holds,
-                (_, true) => Verdict::Fails,
-                _ => Verdict::Undecided,
-            })
-        }
-        Expectation::Equal { metric, policies, within } => {
-            let differences = differences(&value, metric, policies);
-            judge_mean(&differences, confidence, |[low, high]| {
-                if -within < low && high < within {
-                    Verdict::Holds
-                } else if low > within || high < -within {
-                    Verdict::Fails
-                } else {
-                    Verdict::Undecided
-                }
-            })
+        Expectation::Above { metric, policies, .. } | Expectation::Equal { metric, policies, .. } => {
+            let cell = |policy: usize| -> Cell { (case, policy) };
+            judge_pairs(expected, &trials.pairs(policies.map(|policy| (cell(policy), metric))), intervals)
         }
     }
 }
 
-fn differences(
-    value: &impl Fn(usize, usize) -> Vec<Option<f64>>,
-    metric: usize,
-    [a, b]: [usize; 2],
-) -> Vec<f64> {
-    let pairs = value(a, metric).into_iter().zip(value(b, metric));
-    pairs.filter_map(|(a, b)| Some(a? - b?)).collect()
+/// The confidence of one of the intervals that share the allowed error.
+fn confidence(expected: &Expected, intervals: usize) -> f64 {
+    1.0 - (1.0 - expected.confidence) / intervals.max(1) as f64
+}
+
+/// Judges an expectation of a difference.
+pub fn judge_pairs(expected: &Expected, pairs: &Pairs, intervals: usize) -> Judgement {
+    let differences = pairs.differences();
+    let (n, confidence) = (differences.len(), confidence(expected, intervals));
+    let enough = n >= FIRST_LOOK as usize;
+    let interval = enough.then(|| pairs.cautious(confidence)).flatten();
+    let is_same = pairs.standing() == Standing::Same;
+    let verdict = match (interval, &expected.what) {
+        _ if is_same => Verdict::Same,
+        (Some([low, _]), Expectation::Above { by, .. }) if low > *by => Verdict::Holds,
+        (Some([_, high]), Expectation::Above { by, .. }) if high < *by => Verdict::Fails,
+        (Some([low, high]), Expectation::Equal { within, .. }) if -within < low && high < *within => {
+            Verdict::Holds
+        }
+        (Some([low, high]), Expectation::Equal { within, .. }) if low > *within || high < -within => {
+            Verdict::Fails
+        }
+        _ => Verdict::Undecided,
+    };
+    let needs = || {
+        format!(
+            "needs {FIRST_LOOK} pairs, and {} differences other than the commonest one (found {})",
+            cautious::least_others(confidence),
+            cautious::others(&differences)
+        )
+    };
+    let needs = interval.is_none().then(|| if is_same { Standing::Same.to_string() } else { needs() });
+    Judgement { verdict, n, observed: pairs.difference(), interval, needs }
 }
 
 fn judge_share(held: usize, n: usize, share: f64, confidence: f64, is_last: bool) -> Judgement {
@@ -197,21 +212,6 @@ fn judge_share(held: usize, n: usize, share: f64, confidence: f64, is_last: bool
         }
     };
     Judgement { verdict, n, observed, interval, needs: None }
-}
-
-fn judge_mean(differences: &[f64], confidence: f64, verdict: impl Fn([f64; 2]) -> Verdict) -> Judgement {
-    let n = differences.len();
-    let observed = (n > 0).then(|| differences.iter().sum::<f64>() / n as f64);
-    let enough = n >= FIRST_LOOK as usize;
-    let interval = enough.then(|| cautious::interval(differences, confidence)).flatten();
-    let needs = interval.is_none().then(|| {
-        format!(
-            "needs {FIRST_LOOK} pairs, and {} differences other than the commonest one (found {})",
-            cautious::least_others(confidence),
-            cautious::others(differences)
-        )
-    });
-    Judgement { verdict: interval.map_or(Verdict::Undecided, verdict), n, observed, interval, needs }
 }
 
 #[cfg(test)]

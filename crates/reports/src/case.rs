@@ -4,7 +4,7 @@
 use askama::Template;
 use experiments::Failure;
 use experiments::comparison::{
-    Comparison, Verdict, answer, digits, limit_of_correction, moments_of, short, short_p, test_in_words,
+    Comparison, Trials, Verdict, answer, digits, limit_of_correction, short, short_p, test_in_words,
 };
 use experiments::experiment::{Axis, Experiment, PolicySpec, Seeds};
 use experiments::sweep::folder::Folder;
@@ -272,7 +272,7 @@ fn row(c: &Comparison) -> Row {
 fn summary(folder: &Folder, case: usize) -> Vec<Vec<String>> {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let trials = folder.trials_of(case);
-    let cell = |policy, metric| moments(&moments_of(folder, (case, policy), metric), trials);
+    let cell = |policy, metric| moments(&Trials::of(folder, case).moments(((case, policy), metric)), trials);
     let primary = metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
     primary
         .map(|(place, metric)| {

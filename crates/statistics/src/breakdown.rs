@@ -10,6 +10,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
 use crate::bootstrap::quantile;
+use crate::comparison::{Direction, Standing};
 
 const RESAMPLES: usize = 4_000;
 const SEED: u64 = 1;
@@ -17,6 +18,8 @@ const SEED: u64 = 1;
 /// What is known of the breakdown of a policy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Breakdown {
+    /// What the pairs can say at all. Unless they are judged, there is no interval and no point.
+    pub standing: Standing,
     /// The interval of the difference from a draw for each number of liars; `None` where all differences
     /// are equal or there are too few.
     pub intervals: Vec<Option<[f64; 2]>>,
@@ -32,16 +35,25 @@ pub struct Breakdown {
 impl Breakdown {
     /// From the differences between a policy and a draw, a row of pairs in the same order of seeds for each
     /// number of liars from 0 on. A difference within `margin` is none.
-    pub fn of(differences: &[Vec<f64>], margin: f64, confidence: f64) -> Self {
-        let intervals = simultaneous(differences, confidence);
-        let is_better = |interval: &Option<[f64; 2]>| interval.is_some_and(|[low, _]| low > 0.0);
+    pub fn of(differences: &[Vec<f64>], margin: f64, confidence: f64, direction: Direction) -> Self {
+        let is_same = differences.iter().flatten().all(|difference| *difference == 0.0);
+        let standing = Standing::of(differences.first().map_or(0, Vec::len), is_same);
+        let intervals = match standing {
+            Standing::Judged => simultaneous(differences, confidence),
+            _ => vec![None; differences.len()],
+        };
+        let gain = |interval: &Option<[f64; 2]>| match direction {
+            Direction::Lower => interval.map(|[low, high]| [-high, -low]),
+            Direction::Higher | Direction::Neither => *interval,
+        };
+        let is_better = |interval: &Option<[f64; 2]>| gain(interval).is_some_and(|[low, _]| low > 0.0);
         let is_broken = |interval: &Option<[f64; 2]>| {
-            interval.is_some_and(|[low, high]| high < margin && (low > -margin || high < 0.0))
+            gain(interval).is_some_and(|[low, high]| high < margin && (low > -margin || high < 0.0))
         };
         let kept = intervals.iter().take_while(|it| is_better(it)).count();
         let broken = intervals[kept..].iter().position(is_broken).map(|place| kept + place);
         let broken = broken.filter(|_| kept > 0);
-        Self { has_room: kept > 0, safe: kept.checked_sub(1), broken, intervals }
+        Self { standing, has_room: kept > 0, safe: kept.checked_sub(1), broken, intervals }
     }
 }
 
@@ -109,7 +121,7 @@ mod tests {
     #[test]
     fn the_statement_is_seldom_wrong() {
         let found: Vec<Breakdown> =
-            (0..200).map(|seed| Breakdown::of(&differences(seed), 1.0, 0.95)).collect();
+            (0..200).map(|seed| Breakdown::of(&differences(seed), 1.0, 0.95, Direction::Higher)).collect();
         let wrong =
             found.iter().filter(|it| it.safe.is_some_and(|k| k >= 3) || it.broken.is_some_and(|k| k < 3));
         let wrong = wrong.count();
@@ -121,21 +133,38 @@ mod tests {
     /// An interval between 0 and the margin is shown to be better, and is not counted as broken as well.
     #[test]
     fn better_by_less_than_the_margin_is_better() {
-        let found = Breakdown::of(&differences(1)[..3], 100.0, 0.95);
+        let found = Breakdown::of(&differences(1)[..3], 100.0, 0.95, Direction::Higher);
         assert_eq!((found.safe, found.broken), (Some(2), None));
     }
 
     #[test]
     fn without_room_no_point_is_named() {
         let worse: Vec<Vec<f64>> = differences(1)[4..].to_vec();
-        let found = Breakdown::of(&worse, 1.0, 0.95);
+        let found = Breakdown::of(&worse, 1.0, 0.95, Direction::Higher);
         assert_eq!((found.has_room, found.safe, found.broken), (false, None, None));
         assert!(found.intervals.iter().all(Option::is_some));
     }
 
     #[test]
+    fn less_of_a_cost_is_better() {
+        let of = |differences: &[Vec<f64>]| Breakdown::of(differences, 1.0, 0.95, Direction::Lower);
+        let opposite: Vec<Vec<f64>> =
+            differences(1).iter().map(|row| row.iter().map(|it| -it).collect()).collect();
+        assert!(of(&opposite).safe >= Some(1) && !of(&differences(1)[..1]).has_room);
+    }
+
+    #[test]
+    fn few_pairs_or_equal_ones_name_no_point() {
+        let of = |differences: &[Vec<f64>]| Breakdown::of(differences, 1.0, 0.95, Direction::Higher);
+        let few = of(&[vec![9.0, 9.5], vec![8.0, 9.0]]);
+        assert_eq!((few.standing, few.safe), (Standing::TooFew { distinct: 2 }, None));
+        assert_eq!(few.intervals, [None, None]);
+        assert_eq!(of(&[vec![0.0; 9]]).standing, Standing::Same);
+    }
+
+    #[test]
     fn equal_differences_have_no_interval() {
-        let found = Breakdown::of(&[vec![2.0; 9], vec![2.0; 9]], 1.0, 0.95);
+        let found = Breakdown::of(&[vec![2.0; 9], vec![2.0; 9]], 1.0, 0.95, Direction::Higher);
         assert_eq!(found.intervals, [None, None]);
         assert!(simultaneous(&[], 0.95).is_empty());
     }

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::{Moments, bootstrap};
+use super::Moments;
 
 /// Fewest differences other than the commonest one.
 const LEAST_OTHERS: f64 = 8.0;
@@ -36,12 +36,17 @@ pub fn others(values: &[f64]) -> usize {
     values.len() - counts.into_values().max().unwrap_or(0)
 }
 
-/// The interval of the mean at this confidence. `None` if too few values differ from the commonest one.
-pub fn interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
+/// The interval of the mean at this confidence, around the bootstrap interval. `None` if too few values
+/// differ from the commonest one.
+pub fn around(
+    values: &[f64],
+    confidence: f64,
+    bootstrap: impl FnOnce() -> Option<[f64; 2]>,
+) -> Option<[f64; 2]> {
     if others(values) < least_others(confidence) {
         return None;
     }
-    let [low, high] = bootstrap::interval(values, confidence)?;
+    let [low, high] = bootstrap()?;
     let [t_low, t_high] = t_interval(values, confidence)?;
     Some([low.min(t_low), high.max(t_high)])
 }
@@ -64,6 +69,7 @@ fn t_interval(values: &[f64], confidence: f64) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bootstrap;
     use crate::paired::t_half_width_at;
 
     /// Twenty quantiles of the exponential distribution: its long tail lies beyond the largest of them.
@@ -73,7 +79,7 @@ mod tests {
         let (mean, confidence) = (Moments::of(&values).mean.unwrap(), 0.9995);
         let half = t_half_width_at(&values, confidence).unwrap();
         let [low, high] = bootstrap::interval(&values, confidence).unwrap();
-        let [least, most] = interval(&values, confidence).unwrap();
+        let [least, most] = around(&values, confidence, || Some([low, high])).unwrap();
         assert!(least <= low.min(mean - half), "{least}");
         assert!(most - mean > 1.5 * (high.max(mean + half) - mean), "{most}, {high}, {half}");
     }

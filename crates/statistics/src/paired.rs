@@ -78,17 +78,18 @@ pub fn pairs_needed(differences: &[f64]) -> Option<u64> {
     (pairs.is_finite() && pairs < 1e12).then(|| (pairs.ceil() as u64).max(2))
 }
 
-/// The fewest pairs with which Wilcoxon's signed-rank test can find a difference at 5 %, two-sided.
-pub const FEWEST_PAIRS: usize = 6;
+/// The least number of distinct pairs that give an interval, a p value and a verdict: with fewer, no p of
+/// Wilcoxon's signed-rank test is below 0.05.
+pub const LEAST_PAIRS: usize = 6;
 
 /// The least true mean difference that a two-sided paired t test at 5 % with this many pairs detects with
 /// 80 % power, if the differences have this standard deviation (Guenther's approximation to the noncentral
 /// t, 1981, solved for the difference). It depends on the standard deviation of the differences, not on
-/// their mean. `None` for fewer than [`FEWEST_PAIRS`], or without any spread.
+/// their mean. `None` for fewer than [`LEAST_PAIRS`], or without any spread.
 pub fn detectable(sd: f64, pairs: usize) -> Option<f64> {
     let normal = Normal::standard();
     let (level, power) = (normal.inverse_cdf(0.975), normal.inverse_cdf(0.8));
-    let is_told = pairs >= FEWEST_PAIRS && sd > 0.0;
+    let is_told = pairs >= LEAST_PAIRS && sd > 0.0;
     is_told.then(|| (level + power) * sd / (pairs as f64 - level * level / 2.0).sqrt())
 }
 
@@ -105,7 +106,7 @@ pub fn pairs_for_margin(differences: &[f64], margin: f64) -> Option<u64> {
         ((level + power) * sd / margin).powi(2) + level * level / 2.0
     };
     let most = pairs(0.975, 0.8).max(pairs(0.95, 0.9));
-    (most.is_finite() && most < 1e12).then(|| (most.ceil() as u64).max(FEWEST_PAIRS as u64))
+    (most.is_finite() && most < 1e12).then(|| (most.ceil() as u64).max(LEAST_PAIRS as u64))
 }
 
 /// Half the width of the 95 % paired t interval; `None` for fewer than two differences.

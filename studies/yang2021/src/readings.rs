@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use experiments::Failure;
-use experiments::comparison::CONFIDENCE;
+use experiments::comparison::{self, CONFIDENCE, Pairs};
 use experiments::experiment::PolicySpec;
 use experiments::metric::{Catalogue, Values};
 use experiments::rounds::Round;
@@ -29,15 +29,14 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// The mean difference over the trials in which it is defined.
-    fn of(differences: &[Option<f64>]) -> Option<Self> {
+    /// The mean of these differences.
+    fn of(differences: &[f64]) -> Option<Self> {
         Self::at(differences, CONFIDENCE)
     }
 
     /// The same with an interval at another confidence.
-    fn at(differences: &[Option<f64>], confidence: f64) -> Option<Self> {
-        let defined: Vec<f64> = differences.iter().flatten().copied().collect();
-        Some(Self { mean: Moments::of(&defined).mean?, half: t_half_width_at(&defined, confidence)? })
+    fn at(differences: &[f64], confidence: f64) -> Option<Self> {
+        Some(Self { mean: Moments::of(differences).mean?, half: t_half_width_at(differences, confidence)? })
     }
 
     /// The side of zero on which the whole interval lies: 1, -1, or 0 for neither.
@@ -106,10 +105,17 @@ impl<'f> Trials<'f> {
         self.folder.results().get(&(0, policy, trial))?.metrics.as_ref()
     }
 
-    /// Metric of one policy minus that of another, trial by trial; `None` where it is undefined.
-    fn differences(&self, metric: usize, a: usize, b: usize) -> Vec<Option<f64>> {
-        let value = |policy: usize, trial: u32| self.metrics(policy, trial)?.get(metric);
-        self.numbers.iter().map(|trial| Some(value(a, *trial)? - value(b, *trial)?)).collect()
+    /// Metric of one policy minus that of another, for several pairs over the same trials.
+    fn joint(&self, metric: usize, pairs: &[[usize; 2]]) -> Vec<Vec<f64>> {
+        let numbers = self.numbers.iter().copied();
+        let trials = comparison::Trials::new(self.catalogue(), self.folder.results(), numbers);
+        let quantities = pairs.iter().map(|pair| pair.map(|policy| ((0, policy), metric)));
+        trials.joint(&quantities.collect::<Vec<_>>()).iter().map(Pairs::differences).collect()
+    }
+
+    /// The same for one pair.
+    fn differences(&self, metric: usize, a: usize, b: usize) -> Vec<f64> {
+        self.joint(metric, &[[a, b]]).concat()
     }
 
     /// Share of the trials in which two policies differ in any metric.
@@ -189,15 +195,11 @@ pub fn averaged(trials: &Trials, readings: &[usize]) -> Vec<(String, Vec<Option<
     let row = |(option, value): &(String, String)| {
         let with =
             readings.iter().filter(|i| policies[**i].options().contains(&(option.clone(), value.clone())));
-        let pairs: Vec<(usize, usize)> = with.filter_map(|i| Some((*i, without(*i, option)?))).collect();
+        let pairs: Vec<[usize; 2]> = with.filter_map(|i| Some([*i, without(*i, option)?])).collect();
         let difference = |metric: &usize| {
-            let all: Vec<Vec<Option<f64>>> =
-                pairs.iter().map(|(a, b)| trials.differences(*metric, *a, *b)).collect();
-            let mean = |trial: usize| {
-                let of_trial = all.iter().map(|of| of[trial]).collect::<Option<Vec<f64>>>()?;
-                Moments::of(&of_trial).mean
-            };
-            Difference::of(&(0..trials.numbers.len()).map(mean).collect::<Vec<_>>())
+            let all = trials.joint(*metric, &pairs);
+            let mean = |trial: usize| Moments::of(&all.iter().map(|of| of[trial]).collect::<Vec<_>>()).mean;
+            Difference::of(&(0..all.first()?.len()).filter_map(mean).collect::<Vec<_>>())
         };
         (
             format!("{option}: {value} ({} pairs of readings)", pairs.len()),
@@ -223,7 +225,7 @@ pub fn rivals(trials: &Trials, readings: &[usize]) -> Vec<RivalRow> {
         for rival in &rivals {
             let differences: Vec<_> =
                 readings.par_iter().map(|reading| trials.differences(metric, *reading, *rival)).collect();
-            let side = |differences: &Vec<Option<f64>>| {
+            let side = |differences: &Vec<f64>| {
                 [CONFIDENCE, shared].map(|at| Difference::at(differences, at).map_or(0, |found| found.side()))
             };
             let sides: Sides = differences.iter().map(side).collect();

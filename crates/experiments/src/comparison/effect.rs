@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use store::Failure;
 
-use super::{CONFIDENCE, Choice, LEAST_PAIRS, LEVEL, pairs_of, policies_of};
+use super::{CONFIDENCE, Choice, LEVEL, Standing, Trials, policies_of};
 use crate::experiment::{Case, Experiment};
 use crate::sweep::folder::Folder;
 use statistics::Moments;
@@ -52,10 +52,10 @@ impl Effect {
 
     /// The change and the ends of its interval, in percent of the mean in the reference. `None` if that
     /// mean is not above zero.
-    pub fn in_percent(&self) -> Option<[f64; 3]> {
+    pub fn in_percent(&self) -> Option<(f64, Option<[f64; 2]>)> {
         let [there, _] = self.means.filter(|[there, _]| *there > 0.0)?;
-        let [low, high] = self.interval?;
-        Some([self.change?, low, high].map(|change| 100.0 * change / there))
+        let percent = |change: f64| 100.0 * change / there;
+        Some((percent(self.change?), self.interval.map(|ends| ends.map(percent))))
     }
 }
 
@@ -84,21 +84,21 @@ pub fn effects(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
 
 fn effect(folder: &Folder, contrast: Contrast, metric: usize, policy: usize) -> Effect {
     let experiment = folder.experiment();
-    let pairs = pairs_of(folder, metric, [(contrast.case, policy), (contrast.reference, policy)]);
-    let changes = pairs.differences();
+    let Contrast { case, reference, .. } = contrast;
+    let pairs = Trials::of(folder, case).pairs([case, reference].map(|case| ((case, policy), metric)));
     Effect {
-        case: contrast.case + 1,
-        reference: contrast.reference + 1,
+        case: case + 1,
+        reference: reference + 1,
         path: experiment.axes[contrast.axis].path.clone(),
         values: contrast.values(experiment),
         others: contrast.others(experiment),
         metric: experiment.metrics[metric].name.clone(),
         policy: experiment.policies[policy].label.clone(),
-        n: changes.len(),
+        n: pairs.a.len(),
         means: Moments::of(&pairs.b).mean.zip(Moments::of(&pairs.a).mean).map(|(there, here)| [there, here]),
-        change: Moments::of(&changes).mean,
+        change: pairs.difference(),
         interval: pairs.interval(CONFIDENCE),
-        p: (changes.len() >= LEAST_PAIRS).then(|| SignedRank::of(&changes).p),
+        p: (pairs.standing() == Standing::Judged).then(|| SignedRank::of(&pairs.tested()).p),
         p_holm: None,
     }
 }

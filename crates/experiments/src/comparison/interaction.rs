@@ -5,12 +5,10 @@
 use serde::Serialize;
 use store::Failure;
 
-use super::cell::{Cell, hashes};
 use super::effect::{Contrast, contrasts, corrected, is_shown};
-use super::{CONFIDENCE, Choice, LEAST_PAIRS, Repeats, by_trial, p_in_words, policy_pairs, short};
+use super::{CONFIDENCE, Choice, Pairs, Standing, Trials, p_in_words, policy_pairs, short};
 use crate::sweep::folder::Folder;
 use statistics::Moments;
-use statistics::bootstrap::interval;
 use statistics::wilcoxon::SignedRank;
 
 /// How the difference of two policies changes with one field of the scenario.
@@ -81,16 +79,11 @@ pub fn interactions(folder: &Folder, metrics: &[usize], choice: Choice) -> Resul
 fn interaction(folder: &Folder, contrast: Contrast, metric: usize, pair: [usize; 2]) -> Interaction {
     let experiment = folder.experiment();
     let Contrast { case, reference, axis } = contrast;
-    let cells = |case: usize| pair.map(|policy| (case, policy));
-    let differences = [reference, case].map(|case| by_trial(folder, metric, cells(case)));
-    let [there, here] = differences;
-    let all: Vec<Cell> = [reference, case].into_iter().flat_map(cells).collect();
-    let mut repeats = Repeats::default();
-    let trials = (1..).zip(there.into_iter().zip(here));
-    let new = trials.filter(|(trial, _)| repeats.is_new(*trial, &hashes(folder, &all, *trial)));
-    let both: Vec<[f64; 2]> = new.filter_map(|(_, (there, here))| Some([there?, here?])).collect();
-    let column = |i: usize| both.iter().map(|pair| pair[i]).collect::<Vec<f64>>();
-    let changes: Vec<f64> = both.iter().map(|[there, here]| here - there).collect();
+    let cells = [reference, case].map(|case| pair.map(|policy| ((case, policy), metric)));
+    let found = Trials::of(folder, case).joint(&cells);
+    let pairs = Pairs { a: found[1].differences(), b: found[0].differences(), ..Pairs::default() };
+    let [there, here] = [0, 1].map(|case| found[case].tested());
+    let tested: Vec<f64> = here.iter().zip(there).map(|(here, there)| here - there).collect();
     let [a, b] = pair.map(|policy| experiment.policies[policy].label.clone());
     Interaction {
         case: case + 1,
@@ -101,11 +94,11 @@ fn interaction(folder: &Folder, contrast: Contrast, metric: usize, pair: [usize;
         metric: experiment.metrics[metric].name.clone(),
         a,
         b,
-        n: changes.len(),
-        differences: Moments::of(&column(0)).mean.zip(Moments::of(&column(1)).mean).map(|(x, y)| [x, y]),
-        change: Moments::of(&changes).mean,
-        interval: interval(&changes, CONFIDENCE),
-        p: (changes.len() >= LEAST_PAIRS).then(|| SignedRank::of(&changes).p),
+        n: pairs.a.len(),
+        differences: Moments::of(&pairs.b).mean.zip(Moments::of(&pairs.a).mean).map(|(x, y)| [x, y]),
+        change: pairs.difference(),
+        interval: pairs.interval(CONFIDENCE),
+        p: (pairs.standing() == Standing::Judged).then(|| SignedRank::of(&tested).p),
         p_holm: None,
         in_words: String::new(),
     }
@@ -119,7 +112,8 @@ fn in_words(interaction: &Interaction) -> String {
     let (Some([there, here]), Some(change), Some(p), Some([low, high])) =
         (interaction.differences, interaction.change, interaction.p_holm, interaction.interval)
     else {
-        return format!("{place}: nothing can be said of {a} less {b}: there are too few seeds.");
+        let standing = Standing::of(*n, interaction.change == Some(0.0));
+        return format!("{place}: nothing is tested of {a} less {b}: {standing}.");
     };
     let course = format!("{a} less {b} goes from {} to {}", short(there), short(here));
     let range = format!("change {}, 95 % interval {} to {}, n = {n}", short(change), short(low), short(high));

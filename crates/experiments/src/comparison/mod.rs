@@ -2,13 +2,11 @@
 //! computed by the crate [`statistics`].
 
 mod asked;
-mod cell;
 mod doubts;
 mod effect;
 mod interaction;
 mod own;
-mod pairs;
-mod sums;
+mod trials;
 
 use rayon::prelude::*;
 pub use statistics::comparison::*;
@@ -18,14 +16,11 @@ use crate::experiment::Experiment;
 use crate::sweep::folder::Folder;
 
 pub use asked::{Asked, Wishes};
-pub use cell::Cell;
 pub use doubts::doubts;
 pub use effect::{Effect, effects};
 pub use interaction::{Interaction, interactions};
 pub use own::own_question;
-use pairs::by_trial;
-pub use pairs::pairs_of;
-pub use sums::moments_of;
+pub use trials::{Cell, Quantity, Trials};
 
 /// The same warning for the changes along axes: of means, or of differences.
 pub fn limit_of_changes(effects: &[Effect], interactions: &[Interaction]) -> Option<String> {
@@ -59,7 +54,7 @@ pub fn compare(folder: &Folder, metrics: &[usize], choice: Choice) -> Result<Vec
         .flat_map(|(case, metric)| pairs.iter().map(move |pair| (case, metric, *pair)))
         .collect();
     let pairs = |(case, metric, pair): &(usize, usize, [usize; 2])| {
-        pairs_of(folder, *metric, pair.map(|policy| (*case, policy)))
+        Trials::of(folder, *case).pairs(pair.map(|policy| ((*case, policy), *metric)))
     };
     let one = |of: &(usize, usize, [usize; 2])| {
         let (case, metric, pair) = *of;

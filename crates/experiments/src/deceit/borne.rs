@@ -1,11 +1,12 @@
 //! What the trials of a sweep of lies show.
 
-use statistics::Moments;
 use statistics::breakdown::Breakdown;
+use statistics::comparison::Pairs;
 use teaming::arrow::Written;
 
 use super::cells::{CONFIDENCE, Difference, Lie, deaf_guide, draw, lies};
 use crate::Failure;
+use crate::comparison::Trials;
 use crate::experiment::Experiment;
 use crate::sweep::folder::Folder;
 
@@ -129,36 +130,23 @@ impl Rows<'_> {
         &self.folder.experiment().policies[policy].label
     }
 
-    fn value(&self, case: usize, policy: usize, trial: u32) -> Option<f64> {
-        self.folder.value((case, policy, trial), self.metric)
-    }
-
     fn mean(&self, case: usize, policy: usize, metric: usize) -> Option<f64> {
-        Moments::of(&self.folder.values(case, policy, metric)).mean
-    }
-
-    fn trials(&self) -> impl Iterator<Item = u32> + use<> {
-        1..=self.folder.experiment().trials
+        Trials::of(self.folder, case).moments(((case, policy), metric)).mean
     }
 
     fn borne(&self, policy: usize, draw: usize, lie: &Lie, margin: Option<f64>) -> Borne {
-        let difference =
-            |case: usize, trial: u32| Some(self.value(case, policy, trial)? - self.value(case, draw, trial)?);
-        // Differences of one seed stay together, so that only trials with all of them count.
-        let rows = self.trials().filter_map(|trial| {
-            lie.cases.iter().map(|case| difference(*case, trial)).collect::<Option<Vec<f64>>>()
-        });
-        let mut differences = vec![Vec::new(); lie.cases.len()];
-        for row in rows {
-            differences.iter_mut().zip(row).for_each(|(all, one)| all.push(one));
-        }
+        let pair = |case: &usize| [policy, draw].map(|policy| ((*case, policy), self.metric));
+        let pairs: Vec<_> = lie.cases.iter().map(pair).collect();
+        let found = Trials::of(self.folder, lie.cases[0]).joint(&pairs);
+        let differences: Vec<Vec<f64>> = found.iter().map(Pairs::differences).collect();
+        let direction = self.folder.experiment().metrics[self.metric].direction;
         let mean = |case: &usize| self.mean(*case, policy, self.metric);
         Borne {
             policy: self.label(policy).to_owned(),
             lie: lie.name.clone(),
             means: lie.cases.iter().map(mean).collect(),
-            differences: differences.iter().map(|row| Moments::of(row).mean).collect(),
-            breakdown: Breakdown::of(&differences, margin.unwrap_or(0.0), CONFIDENCE),
+            differences: found.iter().map(Pairs::difference).collect(),
+            breakdown: Breakdown::of(&differences, margin.unwrap_or(0.0), CONFIDENCE, direction),
         }
     }
 
@@ -190,11 +178,9 @@ impl Rows<'_> {
     }
 
     fn price(&self, policy: usize, rule: usize, lie: &Lie) -> Price {
-        let pair = |trial: u32| {
-            let honest = *lie.cases.first()?;
-            Some(self.value(honest, policy, trial)? - self.value(honest, rule, trial)?)
-        };
-        let difference = Difference::of(&self.trials().filter_map(pair).collect::<Vec<f64>>());
+        let honest = lie.cases[0];
+        let pair = [policy, rule].map(|policy| ((honest, policy), self.metric));
+        let difference = Difference::of(&Trials::of(self.folder, honest).pairs(pair));
         let [policy, rule] = [policy, rule].map(|it| self.label(it).to_owned());
         Price { policy, rule, lie: lie.name.clone(), difference }
     }

@@ -1,7 +1,7 @@
 //! The cells of a sweep of lies: which cases have which lie and how many liars.
 
 use serde::Serialize;
-use statistics::{Moments, cautious};
+use statistics::comparison::Pairs;
 use teaming::arrow::Written;
 
 use crate::experiment::{Experiment, PolicySpec};
@@ -27,8 +27,8 @@ pub struct Difference {
 
 impl Difference {
     /// The difference of these pairs.
-    pub(super) fn of(values: &[f64]) -> Self {
-        Self { mean: Moments::of(values).mean, interval: cautious::interval(values, CONFIDENCE) }
+    pub(super) fn of(pairs: &Pairs) -> Self {
+        Self { mean: pairs.difference(), interval: pairs.cautious(CONFIDENCE) }
     }
 }
 

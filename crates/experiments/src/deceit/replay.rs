@@ -9,6 +9,7 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 use serde::Serialize;
 use statistics::Moments;
+use statistics::comparison::Pairs;
 use teaming::{Asked, Assignment, Deadline, Member, PolicyError, Question, Session, TrialStart};
 use usar_sim::simulation::{Advance, Ask, Simulation};
 
@@ -82,7 +83,8 @@ impl Replay {
             // One trial without a value, and the mean would be of some of the trials only.
             let values: Vec<f64> =
                 rows.iter().map(|row| row[policy]).collect::<Option<_>>().unwrap_or_default();
-            Difference::of(&values)
+            let b = vec![0.0; values.len()];
+            Difference::of(&Pairs { a: values, b, ..Pairs::default() })
         };
         let worth = |policy: usize, spec: &PolicySpec, lie: &Lie| Worth {
             policy: spec.label.clone(),

@@ -7,8 +7,37 @@ use super::*;
 use crate::experiment::PolicySpec;
 use crate::metric::Catalogue;
 
+use crate::sweep::folder::{Measured, Results};
+
+fn metrics() -> Catalogue {
+    Catalogue::with(&["far".to_owned()], &Words::default())
+}
+
+/// Judges trials in which all metrics have the value of the policy.
+fn judged(expected: &Expected, trials: &[[Option<f64>; 2]], intervals: usize, is_last: bool) -> Judgement {
+    let metrics = metrics();
+    let measured = |value: Option<f64>| Measured {
+        status: "completed",
+        metrics: Some(std::iter::repeat_n(value, metrics.len()).collect()),
+        hash: 0,
+        failure: None,
+    };
+    let of_trial = |(trial, values): (u32, &[Option<f64>; 2])| {
+        [0, 1].map(|policy| ((0, policy, trial), measured(values[policy])))
+    };
+    let results: Results = (1..).zip(trials).flat_map(of_trial).collect();
+    let trials = Trials::new(&metrics, &results, 1..=trials.len() as u32);
+    judge(expected, &trials, 0, intervals, is_last)
+}
+
+/// Judges differences of two policies in a sweep's last look.
+fn of_differences(expected: &Expected, differences: &[f64], intervals: usize) -> Judgement {
+    let trials: Vec<_> = differences.iter().map(|d| [Some(*d), Some(0.0)]).collect();
+    judged(expected, &trials, intervals, true)
+}
+
 fn read(text: &str) -> Result<Expected, String> {
-    let metrics = Catalogue::with(&["far".to_owned()], &Words::default());
+    let metrics = metrics();
     let policies = ["RNE", "DIS"].map(|name| PolicySpec::parse(name, &policies::standard()).unwrap());
     parse(text, &metrics, &policies).map_err(|error| error.to_string())
 }
@@ -62,24 +91,24 @@ fn looks_double_up_to_the_last() {
 #[test]
 fn every_seed_is_refuted_by_one() {
     let every = read("rescuees > 0 in 100 % of seeds").unwrap();
-    let judge = |values: Vec<Option<f64>>, is_last| judge(&every, |_, _| values.clone(), 3, is_last).verdict;
-    assert_eq!(judge(vec![Some(1.0); 10], false), Verdict::Undecided);
-    assert_eq!(judge(vec![Some(1.0); 10], true), Verdict::Holds);
-    assert_eq!(judge(vec![Some(1.0), None], false), Verdict::Fails);
+    let verdict = |values: &[Option<f64>], is_last| {
+        let trials: Vec<_> = values.iter().map(|value| [*value, None]).collect();
+        judged(&every, &trials, 3, is_last).verdict
+    };
+    assert_eq!(verdict(&[Some(1.0); 10], false), Verdict::Undecided);
+    assert_eq!(verdict(&[Some(1.0); 10], true), Verdict::Holds);
+    assert_eq!(verdict(&[Some(1.0), None], false), Verdict::Fails);
 }
 
 /// The verdict of one sequential test, with up to 160 trials.
 fn sequential(expected: &Expected, mut draw: impl FnMut() -> [f64; 2]) -> Verdict {
-    let (mut a, mut b) = (Vec::new(), Vec::new());
+    let mut trials = Vec::new();
     let looks = looks(160);
     for look in &looks {
-        while a.len() < *look as usize {
-            let [first, second] = draw();
-            a.push(Some(first));
-            b.push(Some(second));
+        while trials.len() < *look as usize {
+            trials.push(draw().map(Some));
         }
-        let value = |policy, _| if policy == 0 { a.clone() } else { b.clone() };
-        let judged = judge(expected, value, looks.len(), look == looks.last().unwrap());
+        let judged = judged(expected, &trials, looks.len(), look == looks.last().unwrap());
         if judged.verdict != Verdict::Undecided {
             return judged.verdict;
         }
@@ -110,36 +139,44 @@ fn verdicts_are_seldom_wrong_and_clear_cases_are_found() {
     assert_eq!(sequential(&share, || [0.0, 0.0]), Verdict::Fails);
 }
 
-/// Judges differences of two policies in a sweep's last look.
-fn judged(expected: &Expected, differences: &[f64], intervals: usize) -> Judgement {
-    let value = |policy, _| differences.iter().map(|d| Some(if policy == 0 { *d } else { 0.0 })).collect();
-    judge(expected, value, intervals, true)
-}
-
 #[test]
 fn eight_differences_other_than_the_commonest_decide() {
     let above = read("rescuees: RNE > DIS").unwrap();
     let mut differences = vec![1.0; 40];
     (0..7).for_each(|i| differences[i] = 2.0 + i as f64 / 10.0);
-    let seven = judged(&above, &differences, 1);
+    let seven = of_differences(&above, &differences, 1);
     assert_eq!((seven.verdict, seven.interval), (Verdict::Undecided, None));
     assert!(seven.needs.unwrap().ends_with("8 differences other than the commonest one (found 7)"));
     differences[7] = 3.0;
-    assert_eq!(judged(&above, &differences, 1).verdict, Verdict::Holds);
+    assert_eq!(of_differences(&above, &differences, 1).verdict, Verdict::Holds);
     // The rarer an error may be, the more differences it takes.
-    assert_eq!(judged(&above, &differences, 100).verdict, Verdict::Undecided);
+    assert_eq!(of_differences(&above, &differences, 100).verdict, Verdict::Undecided);
     // Equal differences tell nothing of those that were not seen, and 19 pairs are too few.
-    assert_eq!(judged(&above, &[1.0; 200], 1).verdict, Verdict::Undecided);
+    assert_eq!(of_differences(&above, &[1.0; 200], 1).verdict, Verdict::Undecided);
     let few: Vec<f64> = (1..20).map(f64::from).collect();
-    assert_eq!(judged(&above, &few, 1).verdict, Verdict::Undecided);
+    assert_eq!(of_differences(&above, &few, 1).verdict, Verdict::Undecided);
 }
 
 #[test]
 fn expectations_of_a_file_share_their_error() {
     let above = read("rescuees: RNE > DIS").unwrap();
     let differences: Vec<f64> = (0..40).map(|i| f64::from(i) - 13.0).collect();
-    assert_eq!(judged(&above, &differences, 1).verdict, Verdict::Holds);
-    assert_eq!(judged(&above, &differences, 20).verdict, Verdict::Undecided, "shared by twenty intervals");
+    assert_eq!(of_differences(&above, &differences, 1).verdict, Verdict::Holds);
+    assert_eq!(
+        of_differences(&above, &differences, 20).verdict,
+        Verdict::Undecided,
+        "shared by twenty intervals"
+    );
     let every = read("rescuees > 0 in 100 % of seeds").unwrap().what;
     assert!(above.what.has_interval() && !every.has_interval());
+}
+
+/// Neither undecided nor equal within a margin: no difference was possible, or none was seen.
+#[test]
+fn policies_that_are_the_same_in_all_trials_are_told_to_be() {
+    for text in ["rescuees: RNE = DIS within 5", "rescuees: RNE > DIS"] {
+        let same = of_differences(&read(text).unwrap(), &[0.0; 40], 1);
+        assert_eq!((same.verdict, same.interval), (Verdict::Same, None), "{text}");
+        assert_eq!(same.needs.as_deref(), Some("the same in all trials"));
+    }
 }

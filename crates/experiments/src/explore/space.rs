@@ -11,11 +11,11 @@ use store::{Failure, refuse};
 use thiserror::Error;
 
 use super::Parameter;
-use crate::comparison::{Choice, policy_pairs};
+use crate::comparison::{Choice, Trials, policy_pairs};
 use crate::experiment::Experiment;
 use crate::panics::panic_message;
 use crate::run::{Fault, Sessions, SharedTrials, TrialSetup};
-use statistics::Moments;
+use crate::sweep::folder::{Measured, Results};
 
 /// An outcome: a policy's mean of a metric, or the mean of the paired differences of two policies.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -121,8 +121,8 @@ pub struct Point {
     pub first_seed: u64,
 }
 
-/// The metrics of a trial, policy by policy.
-type OfSeed = Vec<Vec<Option<f64>>>;
+/// A trial of a seed, policy by policy.
+type OfSeed = Vec<Measured>;
 
 impl Space {
     /// The parameters of the command line for an experiment, and these outcomes.
@@ -235,12 +235,12 @@ impl Space {
             scenario.as_ref().map_err(Clone::clone)?;
             let seeds: Vec<Result<OfSeed, PointError>> = rest.by_ref().take(trials as usize).collect();
             let seeds = seeds.into_iter().collect::<Result<Vec<OfSeed>, PointError>>()?;
-            Ok(self.outcomes.iter().map(|outcome| value(outcome, &seeds)).collect())
+            Ok(self.values(seeds))
         };
         Some(scenarios.iter().map(of_point).collect())
     }
 
-    /// The metrics of all policies in a trial. Policies that decide alike share the trial.
+    /// The trials of all policies with a seed. Policies that decide alike share the trial.
     fn run_seed(&self, scenario: &Scenario, seed: u64, stop: &AtomicBool) -> Result<OfSeed, PointError> {
         let (shared, mut sessions) = (SharedTrials::default(), Sessions::default());
         let setup = TrialSetup { scenario, seed, is_checked: self.experiment.is_checked };
@@ -254,18 +254,25 @@ impl Space {
             let result = catch_unwind(run)
                 .map_err(|panic| failed(format!("internal error: {}", panic_message(&*panic))))?;
             let trial = result.map_err(|fault| failed(fault.reason))?;
-            Ok(self.experiment.metrics.measure(&trial.record))
+            Ok(Measured::of_record(&trial.record, &self.experiment.metrics))
         };
         policies.map(trial).collect()
     }
-}
 
-/// Mean of an outcome over the trials in which it is defined; a difference must be defined for both
-/// policies.
-fn value(outcome: &Outcome, seeds: &[OfSeed]) -> Option<f64> {
-    let of = |seed: &OfSeed| {
-        let less = outcome.less.map_or(Some(0.0), |less| seed[less][outcome.metric])?;
-        Some(seed[outcome.policy][outcome.metric]? - less)
-    };
-    Moments::of(&seeds.iter().filter_map(of).collect::<Vec<f64>>()).mean
+    /// The outcomes over these seeds.
+    fn values(&self, seeds: Vec<OfSeed>) -> Vec<Option<f64>> {
+        let of_seed = |(trial, measured): (u32, OfSeed)| {
+            measured.into_iter().enumerate().map(move |(policy, one)| ((0, policy, trial), one))
+        };
+        let results: Results = (1..).zip(seeds).flat_map(of_seed).collect();
+        let trials = Trials::new(&self.experiment.metrics, &results, 1..=self.experiment.trials);
+        let value = |outcome: &Outcome| {
+            let of = |policy: usize| ((0, policy), outcome.metric);
+            match outcome.less {
+                None => trials.moments(of(outcome.policy)).mean,
+                Some(less) => trials.pairs([of(outcome.policy), of(less)]).difference(),
+            }
+        };
+        self.outcomes.iter().map(value).collect()
+    }
 }

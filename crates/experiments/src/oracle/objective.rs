@@ -48,7 +48,7 @@ fn ratio(cost: f64, rescued: u32) -> Option<f64> {
 }
 
 /// A quantity by which decisions are judged: `rescuees.total`, `energy_per_rescuee.hard`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Objective {
     name: String,
     quantity: usize,
@@ -57,6 +57,9 @@ pub struct Objective {
     /// Whether the worst value counts as the best.
     #[serde(skip)]
     is_opposite: bool,
+    /// Of a cost per rescuee over many decisions: the ratio of the sums of a fair draw, and its rescuees.
+    #[serde(skip)]
+    around: Option<[f64; 2]>,
 }
 
 /// An unknown name of an objective.
@@ -87,14 +90,27 @@ impl Objective {
         let of = |quantity: usize| {
             let name = QUANTITIES[quantity].name;
             if name == "time" {
-                return vec![Self { name: name.to_owned(), quantity, task: None, is_opposite: false }];
+                return vec![Self {
+                    name: name.to_owned(),
+                    quantity,
+                    task: None,
+                    is_opposite: false,
+                    around: None,
+                }];
             }
-            let total = Self { name: format!("{name}.{TOTAL}"), quantity, task: None, is_opposite: false };
+            let total = Self {
+                name: format!("{name}.{TOTAL}"),
+                quantity,
+                task: None,
+                is_opposite: false,
+                around: None,
+            };
             let each = tasks.iter().enumerate().map(|(task, of)| Self {
                 name: format!("{name}.{of}"),
                 quantity,
                 task: Some(task),
                 is_opposite: false,
+                around: None,
             });
             std::iter::once(total).chain(each).collect()
         };
@@ -105,6 +121,26 @@ impl Objective {
     #[must_use]
     pub fn opposite(self) -> Self {
         Self { is_opposite: !self.is_opposite, ..self }
+    }
+
+    /// The same objective over many decisions, with the `mean` of an objective over a fair draw at all of them.
+    /// For a cost per rescuee, an outcome then has its part in the ratio of sums, also without rescuees: its
+    /// linearised value, of which the mean over a fair draw is that ratio.
+    #[must_use]
+    pub fn over(self, mean: impl Fn(&Self) -> Option<f64>) -> Self {
+        let means = self.sums().and_then(|[cost, count]| Some([mean(&cost)?, mean(&count)?]));
+        let around = means.filter(|[_, count]| *count > 0.0).map(|[cost, count]| [cost / count, count]);
+        Self { around, ..self }
+    }
+
+    /// The cost and the rescuees whose ratio it is; `None` for other quantities.
+    fn sums(&self) -> Option<[Self; 2]> {
+        let cost = QUANTITIES[self.quantity].name.strip_suffix("_per_rescuee")?;
+        let of = |name: &str| {
+            let quantity = QUANTITIES.iter().position(|known| known.name == name)?;
+            Some(Self { quantity, ..self.clone() })
+        };
+        Some([of(cost)?, of("rescuees")?])
     }
 
     /// Its name.
@@ -127,6 +163,10 @@ impl Objective {
 
     /// Its value; `None` where it is undefined, such as a cost per rescuee without rescuees.
     pub fn value(&self, outcome: &Outcome) -> Option<f64> {
+        if let Some(([ratio, mean], parts)) = self.around.zip(self.sums()) {
+            let [cost, count] = parts.map(|part| part.value(outcome));
+            return Some(ratio + (cost? - ratio * count?) / mean);
+        }
         let totals = match self.task {
             Some(task) => *outcome.tasks.get(task)?,
             None => outcome.total(),
@@ -183,6 +223,29 @@ mod tests {
         let expected = "unknown metric \"luck\"; decisions are judged by rescuees.total, rescuees.hard, \
             rescue_rate.total, ";
         assert!(error.to_string().starts_with(expected), "{error}");
+    }
+
+    /// Two assignments at each of two decisions; one rescues nobody and costs 4.
+    #[test]
+    fn over_many_decisions_a_fair_draw_has_the_ratio_of_sums() {
+        let of = |rescued, energy| {
+            let totals = TaskTotals { rescued, secured: rescued, energy, hp: 0.0 };
+            Outcome { tasks: vec![totals], ungrouped: [0.0; 2], duration_s: 60.0, is_cut: false }
+        };
+        let outcomes = [of(0, 4.0), of(4, 8.0), of(2, 3.0), of(1, 3.0)];
+        let mean = |objective: &Objective| {
+            let values = outcomes.iter().map(|outcome| objective.value(outcome));
+            values.sum::<Option<f64>>().map(|sum| sum / 4.0)
+        };
+        let objective = Objective::parse("energy_per_rescuee", &[]).unwrap();
+        assert_eq!(mean(&objective), None, "one of them has no ratio of its own");
+        let objective = objective.over(mean);
+        assert!((mean(&objective).unwrap() - 18.0 / 7.0).abs() < 1e-9);
+        let least = outcomes.iter().map(|outcome| objective.score(outcome).unwrap()).fold(f64::MAX, f64::min);
+        assert!(
+            (objective.score(&outcomes[0]).unwrap() - least).abs() < 1e-9,
+            "rescuing nobody is the worst"
+        );
     }
 
     #[test]

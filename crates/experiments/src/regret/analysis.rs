@@ -9,7 +9,7 @@ use super::study::{PlayedTrial, StudyFolder};
 use crate::experiment::PolicySpec;
 use crate::oracle::{Objective, Standing, Survey};
 use statistics::bootstrap::{interval, ratio_interval};
-use statistics::rank_correlation;
+use statistics::{Moments, rank_correlation};
 
 /// Confidence of all intervals.
 const CONFIDENCE: f64 = 0.95;
@@ -154,6 +154,14 @@ pub struct Criteria<'a> {
 /// # Errors
 /// A policy that this program does not know.
 pub fn analyse(folder: &StudyFolder, criteria: &Criteria, registry: &Registry) -> Result<Analysis, Failure> {
+    let mean = |objective: &Objective| {
+        let of_trial = |trial: &PlayedTrial| {
+            let decisions = trial.decisions.iter().filter_map(|decision| decision.survey().mean(objective));
+            Moments::of(&decisions.collect::<Vec<_>>()).mean
+        };
+        Moments::of(&folder.folder.entries.iter().filter_map(of_trial).collect::<Vec<_>>()).mean
+    };
+    let criteria = &Criteria { objective: &criteria.objective.clone().over(mean), ..*criteria };
     let specs = folder.study.specs(registry)?;
     let labels: Vec<&str> = specs.iter().map(|spec| spec.label.as_str()).collect();
     let (mut looked, mut rows) = (Vec::new(), Vec::new());

@@ -26,7 +26,7 @@ use super::disk::{
 };
 use super::journal::{self, ARCHIVE, Journal};
 use super::line::{Finished, Kept};
-use super::measured::{Results, read_results};
+use super::measured::read_results;
 use super::names::is_sweeps;
 use super::owned::{check_may_be_cleared, clear, remove_unfinished};
 use super::store::{Order, Store, thaw};
@@ -36,7 +36,7 @@ use crate::job::interrupted;
 use crate::provenance::Manifest;
 use crate::run::{Outcome, TrialKey};
 
-pub use super::measured::Measured;
+pub use super::measured::{Measured, Results};
 
 /// A sweep's folder and its finished trials.
 pub struct Folder {

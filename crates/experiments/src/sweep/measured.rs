@@ -6,6 +6,7 @@ use std::path::Path;
 
 use store::{Failure, files, refuse};
 use usar_sim::fit::is_result;
+use usar_sim::record::TrialRecord;
 
 use super::line::Finished;
 use super::rows::{FIRST_METRIC, trial_columns};
@@ -31,10 +32,22 @@ pub struct Measured {
 }
 
 impl Measured {
-    pub(super) fn of(outcome: &Outcome, metrics: &Catalogue) -> Self {
-        let hash = outcome.record().map_or(0, |record| number_of(&record.state_hash));
-        let metrics = outcome.record().map(|record| metrics.measure(record).into_iter().collect());
-        Self { status: outcome.status(), metrics, hash, failure: outcome.failure().map(Into::into) }
+    /// The values of an outcome.
+    pub fn of(outcome: &Outcome, metrics: &Catalogue) -> Self {
+        let failed = || Self {
+            status: outcome.status(),
+            metrics: None,
+            hash: 0,
+            failure: outcome.failure().map(Into::into),
+        };
+        outcome.record().map_or_else(failed, |record| Self::of_record(record, metrics))
+    }
+
+    /// The values of a trial that ran to its end.
+    pub fn of_record(record: &TrialRecord, metrics: &Catalogue) -> Self {
+        let values = Some(metrics.measure(record).into_iter().collect());
+        let hash = number_of(&record.state_hash);
+        Self { status: record.status.name(), metrics: values, hash, failure: None }
     }
 
     pub(super) fn of_finished(finished: &Finished, experiment: &Experiment) -> Self {

@@ -1,7 +1,7 @@
 //! Figures along the axes of a sweep: the differences over two axes as maps, and means along each axis.
 
 use experiments::Failure;
-use experiments::comparison::Comparison;
+use experiments::comparison::{Comparison, Trials};
 use experiments::experiment::{Axis, Experiment};
 use experiments::sweep::folder::Folder;
 
@@ -97,7 +97,7 @@ pub(super) fn axes(folder: &Folder, case: usize, only: Option<&[String]>) -> Res
             for (p, policy) in policies.filter(|(_, policy)| is_drawn(only, &policy.label)) {
                 let mut points: Vec<(f64, f64, f64)> = Vec::new();
                 for (at, other) in cases.iter().enumerate() {
-                    let values = folder.values(*other, p, *metric);
+                    let values = Trials::of(folder, *other).values(((*other, p), *metric));
                     let Some(band) = Band::of(&values) else { continue };
                     points.push(band.at(if is_numeric { numbers[at] } else { at as f64 }));
                     let name = &experiment.metrics[*metric].name;

@@ -1,7 +1,7 @@
 //! Figures of metrics: box plots as in the paper, energy against HP, and paired differences.
 
 use experiments::Failure;
-use experiments::comparison::Comparison;
+use experiments::comparison::{Comparison, Trials};
 use experiments::experiment::Experiment;
 use experiments::metric::{Metric, Values};
 use experiments::sweep::folder::Folder;
@@ -9,7 +9,6 @@ use kuva::plot::annotations::ReferenceLine;
 use kuva::plot::{BoxPlot, ScatterPlot, StripPlot};
 use kuva::render::layout::Layout;
 use kuva::render::plots::Plot;
-use statistics::Moments;
 use statistics::bootstrap::quantile;
 
 use super::is_quiet;
@@ -134,7 +133,7 @@ fn bounds(folder: &Folder, case: usize, metric: usize) -> Vec<ReferenceLine> {
     let policies = &folder.experiment().policies;
     let line = |name: &str, label: &str| {
         let policy = policies.iter().position(|policy| policy.name == name)?;
-        let mean = Moments::of(&folder.values(case, policy, metric)).mean?;
+        let mean = Trials::of(folder, case).moments(((case, policy), metric)).mean?;
         Some(ReferenceLine::horizontal(mean).with_color("#555555").with_dasharray("4 3").with_label(label))
     };
     [line("ORACLE", "oracle"), line("RANDOM", "fair draw")].into_iter().flatten().collect()

@@ -9,10 +9,14 @@ use tables::{Table, labelled, right};
 /// means there.
 pub fn effects_table(effects: &[&Effect]) -> Table {
     let percent = |effect: &Effect| match effect.in_percent() {
-        Some(percent) => {
+        Some((change, interval)) => {
             // Trials do not resolve a tenth of a percent. Adding zero removes the sign of -0.0.
-            let [change, low, high] = percent.map(|value| (10.0 * value).round() / 10.0 + 0.0);
-            format!("{change:+.1} % ({low:.1} to {high:.1}){}", star(effect.is_found()))
+            let rounded = |value: f64| (10.0 * value).round() / 10.0 + 0.0;
+            let range = interval.map_or(String::new(), |ends| {
+                let [low, high] = ends.map(rounded);
+                format!(" ({low:.1} to {high:.1}){}", star(effect.is_found()))
+            });
+            format!("{:+.1} %{range}", rounded(change))
         }
         None => "-".to_owned(),
     };
@@ -42,10 +46,7 @@ fn means_before<'e>(effects: &'e [&Effect]) -> impl Iterator<Item = Pivot> + 'e 
 /// A row for each change of an axis, a column for each pair of policies: the change of their difference,
 /// with its interval.
 pub fn interactions_table(interactions: &[&Interaction]) -> Table {
-    let text = |one: &Interaction| match one.change.zip(one.interval) {
-        Some((change, [low, high])) => with_interval(change, low, high, one.is_found()),
-        None => "-".to_owned(),
-    };
+    let text = |one: &Interaction| with_interval(one.change, one.interval, one.is_found());
     let cells = interactions.iter().map(|one| Pivot {
         row: change(&one.path, &one.values, &one.others),
         column: format!("{} - {}", one.a, one.b),
@@ -56,10 +57,7 @@ pub fn interactions_table(interactions: &[&Interaction]) -> Table {
 
 /// A row for each case, a column for each pair of policies: their difference, with its interval.
 pub fn differences_table(comparisons: &[&Comparison]) -> Table {
-    let text = |one: &Comparison| match one.difference.zip(one.interval) {
-        Some((difference, [low, high])) => with_interval(difference, low, high, one.verdict.is_shown()),
-        None => "-".to_owned(),
-    };
+    let text = |one: &Comparison| with_interval(one.difference, one.interval, one.verdict.is_shown());
     let cells = comparisons.iter().map(|one| Pivot {
         row: place(&one.axes),
         column: format!("{} - {}", one.a, one.b),
@@ -72,7 +70,7 @@ pub fn differences_table(comparisons: &[&Comparison]) -> Table {
 /// pair of policies. Without intervals: `*` marks what is shown, `=` what is equivalent.
 pub fn cases_table(comparisons: &[&Comparison]) -> Table {
     let mark = |one: &Comparison| match one.verdict {
-        Verdict::Equivalent => " =",
+        Verdict::Equivalent | Verdict::Same => " =",
         verdict => star(verdict.is_shown()),
     };
     let text = |one: &Comparison| {
@@ -118,8 +116,9 @@ fn pivoted(title: &str, entries: impl Iterator<Item = Pivot>) -> Table {
 }
 
 /// `value (low to high)`, with a star if the difference is statistically shown.
-fn with_interval(value: f64, low: f64, high: f64, is_found: bool) -> String {
-    format!("{} ({} to {}){}", signed(value), short(low), short(high), star(is_found))
+fn with_interval(value: Option<f64>, interval: Option<[f64; 2]>, is_found: bool) -> String {
+    let range = |[low, high]: [f64; 2]| format!(" ({} to {}){}", short(low), short(high), star(is_found));
+    value.map_or("-".to_owned(), |value| signed(value) + &interval.map_or(String::new(), range))
 }
 
 fn signed(value: f64) -> String {

@@ -3,7 +3,7 @@
 mod effects;
 mod grouping;
 
-use experiments::comparison::{Comparison, digits, moments_of, short, short_p};
+use experiments::comparison::{Comparison, Trials, digits, short, short_p};
 use experiments::experiment::{Experiment, PolicySpec};
 use experiments::sweep::folder::Folder;
 use scenario::Words;
@@ -25,7 +25,7 @@ pub fn policy_table(folder: &Folder, case: usize) -> Table {
     let Experiment { policies, metrics, .. } = folder.experiment();
     let trials = folder.trials_of(case);
     let cell = |policy, metric| {
-        let found = moments_of(folder, (case, policy), metric);
+        let found = Trials::of(folder, case).moments(((case, policy), metric));
         right(moments(&found, trials)).with(found.mean)
     };
     let primary = || metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);

@@ -1,7 +1,7 @@
 //! The answer of a family of comparisons, before any table: every difference that is shown, in a few words.
 
 use super::words::{pairs_in_words, short};
-use super::{Comparison, LEAST_PAIRS, Verdict};
+use super::{Comparison, Standing, Verdict};
 
 /// An answer has at most so many words.
 const WORDS: usize = 25;
@@ -21,11 +21,11 @@ const WORDS: usize = 25;
 /// assert_eq!(answer(&[&one]).unwrap(), "rescuees.hard: RNE 13.4 above DIS.");
 /// ```
 pub fn answer(comparisons: &[&Comparison]) -> Option<String> {
-    if comparisons.iter().all(|one| one.p.is_none()) {
+    if comparisons.iter().all(|one| one.p.is_none() && one.verdict == Verdict::Undecided) {
         let n = comparisons.iter().map(|one| one.n).max()?;
         return Some(match n {
             0 => "No pair of trials has values yet.".to_owned(),
-            n => format!("No verdict: {n} of the {LEAST_PAIRS} distinct pairs of trials that a test takes."),
+            n => format!("No verdict: {}.", Standing::TooFew { distinct: n }),
         });
     }
     let candidates = [sized as fn(&Comparison) -> String, named].map(|of| each_named(comparisons, of));
@@ -52,8 +52,12 @@ fn each_named(comparisons: &[&Comparison], of: fn(&Comparison) -> String) -> Str
 }
 
 fn sized(one: &Comparison) -> String {
-    if let (Verdict::Equivalent, Some(judged)) = (one.verdict, one.judged) {
-        return format!("{} within {} of {}", one.a, short(judged.margin), one.b);
+    match (one.verdict, one.judged) {
+        (Verdict::Same, _) => return format!("{} the same as {}", one.a, one.b),
+        (Verdict::Equivalent, Some(judged)) => {
+            return format!("{} within {} of {}", one.a, short(judged.margin), one.b);
+        }
+        _ => {}
     }
     let difference = one.difference.unwrap_or(0.0);
     let side = if difference > 0.0 { "above" } else { "below" };
@@ -62,7 +66,7 @@ fn sized(one: &Comparison) -> String {
 
 fn named(one: &Comparison) -> String {
     let sign = match one.verdict {
-        Verdict::Equivalent => "=",
+        Verdict::Equivalent | Verdict::Same => "=",
         _ if one.difference.is_some_and(|difference| difference > 0.0) => ">",
         _ => "<",
     };
@@ -74,10 +78,11 @@ fn counted(comparisons: &[&Comparison]) -> String {
     let count =
         |is: fn(Verdict) -> bool| comparisons.iter().filter(|one| is(one.verdict)).count().to_string();
     format!(
-        "{} of {} differences are shown, {} are equivalences, {} are undecided.",
+        "{} of {} differences are shown, {} are equivalences, {} are the same, {} are undecided.",
         count(Verdict::is_shown),
         comparisons.len(),
         count(|verdict| verdict == Verdict::Equivalent),
+        count(|verdict| verdict == Verdict::Same),
         count(|verdict| verdict == Verdict::Undecided),
     )
 }
@@ -134,4 +139,10 @@ pub fn what_would_settle(comparisons: &[Comparison]) -> Option<String> {
              difference as large as its margin, before correction."
         ),
     })
+}
+
+/// What *the same* means, where a comparison is.
+pub fn what_is_the_same(comparisons: &[Comparison]) -> Option<String> {
+    let is_same = comparisons.iter().any(|one| one.verdict == Verdict::Same);
+    is_same.then(|| format!("The same means {}: nothing is tested.", Standing::Same))
 }

@@ -13,9 +13,10 @@ use crate::Moments;
 use crate::paired::{detectable, hodges_lehmann, holm, pairs_for_margin};
 use crate::wilcoxon::{DRAWN_PAIRS, DRAWS, EXACT_PAIRS, SignedRank};
 
-pub use answer::{answer, answer_of_cases, what_would_settle};
-pub use pairs::{Pairs, Repeats};
-pub use sums::{FEW, Sums};
+pub use crate::paired::LEAST_PAIRS;
+pub use answer::{answer, answer_of_cases, what_is_the_same, what_would_settle};
+pub use pairs::{Pairs, Repeats, Standing};
+pub use sums::{FEW, Sums, linearised};
 pub use verdict::{Beyond, Judged, TOST_CONFIDENCE, Verdict};
 use verdict::{beyond, verdict};
 use words::in_words;
@@ -34,8 +35,6 @@ pub enum Direction {
 
 /// Significance level of a finding, after correction.
 pub const LEVEL: f64 = 0.05;
-/// The least number of distinct pairs that give a p value and a verdict: with fewer, no p is below 0.05.
-pub const LEAST_PAIRS: usize = 6;
 /// Confidence of intervals.
 pub const CONFIDENCE: f64 = 0.95;
 
@@ -71,11 +70,11 @@ pub struct Comparison {
     pub mean_b: Option<f64>,
     /// Mean of the differences, first minus second.
     pub difference: Option<f64>,
-    /// 95 % bootstrap interval of the mean difference.
+    /// 95 % bootstrap interval of the mean difference; `None` where the pairs are not [judged](Standing).
     pub interval: Option<[f64; 2]>,
     /// Hodges-Lehmann shift.
     pub shift: Option<f64>,
-    /// Two-sided p of Wilcoxon's signed-rank test; `None` below six pairs.
+    /// Two-sided p of Wilcoxon's signed-rank test; likewise.
     pub p: Option<f64>,
     /// Whether p was counted over all choices of signs, instead of from random choices.
     pub is_exact: bool,
@@ -114,9 +113,10 @@ impl Comparison {
     #[must_use]
     pub fn measured(self, pairs: &Pairs) -> Self {
         let differences = pairs.differences();
-        let test = SignedRank::of(&differences);
+        let tested = pairs.tested();
+        let test = SignedRank::of(&tested);
         let has_pairs = !differences.is_empty();
-        let is_tested = differences.len() >= LEAST_PAIRS;
+        let standing = pairs.standing();
         Self {
             n: differences.len(),
             repeated: pairs.repeated,
@@ -126,10 +126,11 @@ impl Comparison {
             is_of_sums: pairs.sums.is_some(),
             mean_a: Moments::of(&pairs.a).mean,
             mean_b: Moments::of(&pairs.b).mean,
-            difference: Moments::of(&differences).mean,
+            difference: pairs.difference(),
             interval: pairs.interval(CONFIDENCE),
-            shift: hodges_lehmann(&differences),
-            p: is_tested.then_some(test.p),
+            shift: hodges_lehmann(&tested),
+            p: (standing == Standing::Judged).then_some(test.p),
+            verdict: if standing == Standing::Same { Verdict::Same } else { Verdict::Undecided },
             is_exact: test.is_exact,
             effect: has_pairs.then(|| test.effect()),
             pairing: pairing(pairs, &differences),

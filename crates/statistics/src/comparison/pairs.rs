@@ -1,9 +1,51 @@
 //! Values of two subjects in one metric, paired by trial.
 
 use std::collections::BTreeSet;
+use std::fmt;
 
 use super::sums::Sums;
-use crate::bootstrap::interval;
+use crate::paired::LEAST_PAIRS;
+use crate::{Moments, bootstrap, cautious};
+
+/// What pairs can say of a difference. Every command asks here before it judges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// Both are the same in all pairs, to the last bit: there is nothing to test.
+    Same,
+    /// There are fewer distinct pairs than a verdict takes.
+    TooFew {
+        /// Distinct pairs.
+        distinct: usize,
+    },
+    /// They can be judged.
+    Judged,
+}
+
+impl Standing {
+    /// The standing of this many distinct pairs.
+    pub fn of(distinct: usize, is_same: bool) -> Self {
+        if distinct > 0 && is_same {
+            Self::Same
+        } else if distinct < LEAST_PAIRS {
+            Self::TooFew { distinct }
+        } else {
+            Self::Judged
+        }
+    }
+}
+
+/// Why there is no verdict, or that there may be one.
+impl fmt::Display for Standing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Same => f.write_str("the same in all trials"),
+            Self::TooFew { distinct } => {
+                write!(f, "{distinct} of the {LEAST_PAIRS} distinct pairs of trials that a test takes")
+            }
+            Self::Judged => f.write_str("judged"),
+        }
+    }
+}
 
 /// Values of two subjects in one metric, pair by pair.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -32,12 +74,34 @@ impl Pairs {
         Self { a, b, undefined: 0, sums: Some(sums), ..self }
     }
 
-    /// The interval of the mean difference, or of the difference of ratios of sums.
+    /// What they can say of a difference.
+    pub fn standing(&self) -> Standing {
+        Standing::of(self.a.len(), self.a == self.b)
+    }
+
+    /// The differences of which a test asks whether both signs are as likely.
+    pub fn tested(&self) -> Vec<f64> {
+        self.sums.as_ref().map_or_else(|| self.differences(), Sums::exchangeable)
+    }
+
+    /// The interval of the mean difference, or of the difference of ratios of sums; `None` where they are
+    /// not judged.
     pub fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
-        match &self.sums {
-            Some(sums) => sums.interval(confidence),
-            None => interval(&self.differences(), confidence),
+        match (&self.sums, self.standing()) {
+            (_, Standing::Same | Standing::TooFew { .. }) => None,
+            (Some(sums), _) => sums.interval(confidence),
+            (None, _) => bootstrap::interval(&self.differences(), confidence),
         }
+    }
+
+    /// The same, cautious: for verdicts that must seldom be wrong.
+    pub fn cautious(&self, confidence: f64) -> Option<[f64; 2]> {
+        cautious::around(&self.differences(), confidence, || self.interval(confidence))
+    }
+
+    /// The mean difference, or the difference of ratios of sums.
+    pub fn difference(&self) -> Option<f64> {
+        Moments::of(&self.differences()).mean
     }
 
     /// First minus second, pair by pair.

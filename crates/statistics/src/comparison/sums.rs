@@ -3,8 +3,9 @@
 //! The trials with the smallest denominators dominate the mean of the trials' own ratios, and trials
 //! without rescuees are missing from it. The ratio of the sums over all trials has neither defect. A
 //! trial's *linearised value* is its contribution to that ratio: R + (cost - R rescuees) / (mean of
-//! rescuees), where R is the ratio of both subjects together. The mean of a subject's linearised values is
-//! its ratio of sums. Tests and standard deviations of these values are therefore valid for the ratio.
+//! rescuees), where R is the subject's ratio of sums, which is also their mean. Their standard deviation is
+//! therefore valid for the ratio. A test of signs takes what a trial costs beyond the ratio of *both* subjects
+//! together: if they do not differ, each pair's difference of that is as likely as its opposite.
 
 use crate::bootstrap::statistic_interval;
 
@@ -15,8 +16,6 @@ pub const FEW: f64 = 5.0;
 /// Costs and rescuees of two subjects, pair by pair.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub struct Sums {
-    /// Number of each pair's trial, ascending.
-    pub trials: Vec<u32>,
     /// Cost and rescuees of the first, then of the second.
     pub pairs: Vec<[f64; 4]>,
 }
@@ -35,18 +34,36 @@ impl Sums {
 
     /// The linearised values of both subjects.
     pub fn linearised(&self) -> [Vec<f64>; 2] {
-        let ratio = (self.total(0) + self.total(2)) / (self.total(1) + self.total(3));
         [0, 2].map(|cost| {
-            let mean = self.total(cost + 1) / self.pairs.len() as f64;
-            let value = |pair: &[f64; 4]| ratio + (pair[cost] - ratio * pair[cost + 1]) / mean;
-            self.pairs.iter().map(value).collect()
+            let parts: Vec<[f64; 2]> = self.pairs.iter().map(|pair| [pair[cost], pair[cost + 1]]).collect();
+            linearised(&parts)
         })
+    }
+
+    /// What each pair's first trial costs beyond the ratio of both subjects together, less the second.
+    pub fn exchangeable(&self) -> Vec<f64> {
+        let count = self.total(1) + self.total(3);
+        let (ratio, mean) = ((self.total(0) + self.total(2)) / count, count / 2.0 / self.pairs.len() as f64);
+        let difference = |[cost, count, other, others]: &[f64; 4]| {
+            ((cost - ratio * count) - (other - ratio * others)) / mean
+        };
+        self.pairs.iter().map(difference).collect()
     }
 
     /// The interval of the difference of the two ratios, from resampled pairs.
     pub fn interval(&self, confidence: f64) -> Option<[f64; 2]> {
         statistic_interval(self.pairs.len(), confidence, |rows| difference(&self.pairs, rows))
     }
+}
+
+/// The linearised values of costs and rescuees of one subject, trial by trial; none without rescuees.
+pub fn linearised(parts: &[[f64; 2]]) -> Vec<f64> {
+    let [cost, count] = [0, 1].map(|part: usize| parts.iter().map(|trial| trial[part]).sum::<f64>());
+    if count <= 0.0 {
+        return Vec::new();
+    }
+    let (ratio, mean) = (cost / count, count / parts.len() as f64);
+    parts.iter().map(|[cost, count]| ratio + (cost - ratio * count) / mean).collect()
 }
 
 /// The first ratio of sums over these pairs minus the second.
@@ -64,6 +81,7 @@ mod tests {
     use rand::{RngExt, SeedableRng};
 
     use super::*;
+    use crate::wilcoxon::SignedRank;
 
     /// Costs and rescuees; the rescuees are often 0. A rescuee costs 8 in the first cell and 6 in the
     /// second, beside a fixed cost.
@@ -79,7 +97,7 @@ mod tests {
             let [a, b] = [policy(8.0), policy(6.0)];
             [a[0], a[1], b[0], b[1]]
         };
-        Sums { trials: Vec::new(), pairs: (0..pairs).map(|_| pair()).collect() }
+        Sums { pairs: (0..pairs).map(|_| pair()).collect() }
     }
 
     #[test]
@@ -90,6 +108,22 @@ mod tests {
             let mean = values.iter().sum::<f64>() / values.len() as f64;
             assert!((mean - sums.total(cost) / sums.total(cost + 1)).abs() < 1e-9);
         }
+    }
+
+    /// Four in five trials of equal subjects have nobody rescued, and a cost that does not depend on it.
+    #[test]
+    fn a_test_of_equal_ratios_keeps_its_level() {
+        let mut draws = ChaCha8Rng::seed_from_u64(3);
+        let mut trial = || {
+            let count = (10.0 * draws.random::<f64>() - 7.0).floor().max(0.0);
+            [8.0 * count + 4.0 + draws.random::<f64>(), count]
+        };
+        let mut is_found = |_: &u32| {
+            let pairs = (0..50).map(|_| [trial(), trial()]).map(|[a, b]| [a[0], a[1], b[0], b[1]]);
+            SignedRank::of(&Sums { pairs: pairs.collect() }.exchangeable()).p < 0.05
+        };
+        let found = (0..400).filter(|test| is_found(test)).count();
+        assert!((8..=34).contains(&found), "{found} of 400");
     }
 
     /// `xtask coverage` checks more intervals.

@@ -3,7 +3,8 @@
 //! Two policies are *equivalent within a margin* if the 90 % interval of their mean difference lies inside
 //! the margin on both sides. That is the two one-sided tests (TOST, Schuirmann 1987) at 5 %. Otherwise one
 //! policy is *better* if a difference shows after correction and the 95 % interval excludes zero. It is
-//! better *by over the margin* if that whole interval lies beyond the margin. All other comparisons are
+//! better *by over the margin* if that whole interval lies beyond the margin. Before all of this, two
+//! policies are *the same* if no pair of trials differs: nothing is tested. All other comparisons are
 //! *undecided*: more trials would decide them.
 
 use serde::Serialize;
@@ -27,6 +28,8 @@ pub enum Verdict {
     Below,
     /// The difference is smaller than the margin.
     Equivalent,
+    /// Both are the same in all trials: no difference was possible, or none was seen.
+    Same,
     /// The trials do not decide.
     #[default]
     Undecided,
@@ -41,13 +44,14 @@ impl Verdict {
             Self::Above => "above",
             Self::Below => "below",
             Self::Equivalent => "equivalent",
+            Self::Same => "the same",
             Self::Undecided => "undecided",
         }
     }
 
     /// Whether it says that a difference is shown.
     pub fn is_shown(self) -> bool {
-        !matches!(self, Self::Equivalent | Self::Undecided)
+        !matches!(self, Self::Equivalent | Self::Same | Self::Undecided)
     }
 }
 
@@ -98,6 +102,9 @@ pub fn verdict(
     margin: Option<(f64, Option<[f64; 2]>)>,
     direction: Direction,
 ) -> Verdict {
+    if comparison.verdict == Verdict::Same {
+        return Verdict::Same;
+    }
     let within = |margin: f64, [low, high]: [f64; 2]| -margin < low && high < margin;
     let is_equivalent = comparison.p.is_some()
         && margin.is_some_and(|(margin, interval)| interval.is_some_and(|ends| within(margin, ends)));

@@ -1,6 +1,6 @@
 //! Comparisons in sentences, and their numbers as text.
 
-use super::{Beyond, Comparison, Judged, LEAST_PAIRS};
+use super::{Beyond, Comparison, Judged, LEAST_PAIRS, Verdict};
 
 /// The finding as one sentence.
 pub(super) fn in_words(comparison: &Comparison) -> String {
@@ -16,12 +16,20 @@ pub(super) fn in_words(comparison: &Comparison) -> String {
              value."
         );
     };
+    if comparison.verdict == Verdict::Same {
+        return format!("{place}: {a} and {b} are the same in all trials (n = {n}).");
+    }
     let (Some([low, high]), Some(p)) = (comparison.interval, comparison.p_holm) else {
         let from = if *n == 1 { "in the only pair".to_owned() } else { format!("over {n} pairs") };
         let distinct = if comparison.repeated > 0 { " of trials that differ" } else { "" };
         return format!(
-            "{place}: {a} less {b} is {} {from}{distinct}; a test takes {LEAST_PAIRS} or more.",
-            short(difference)
+            "{place}: {a} less {b} is {} {from}{distinct}; {}.",
+            short(difference),
+            if *n < LEAST_PAIRS {
+                format!("a test takes {LEAST_PAIRS} or more")
+            } else {
+                "too few trials have rescuees for an interval".to_owned()
+            }
         );
     };
     let range = format!("95 % interval {} to {}, n = {n}", short(low), short(high));

@@ -2,7 +2,7 @@
 
 use experiments::comparison::{
     Asked, Comparison, Effect, Interaction, answer, answer_of_cases, compare, doubts, effects, interactions,
-    limit_of_changes, limit_of_correction, own_question, test_in_words, what_would_settle,
+    limit_of_changes, limit_of_correction, own_question, test_in_words, what_is_the_same, what_would_settle,
 };
 use experiments::experiment::Experiment;
 use experiments::sweep::host::Hosts;
@@ -183,6 +183,7 @@ impl Compared<'_> {
         let notes = [
             limit_of_correction(&self.comparisons),
             limit_of_changes(&self.effects, &self.interactions),
+            what_is_the_same(&self.comparisons),
             what_would_settle(&self.comparisons),
             (!self.comparisons.is_empty()).then(|| footnote(&self.comparisons)),
             Some(self.asked.margins_in_words(self.experiment)).filter(|margins| !margins.is_empty()),

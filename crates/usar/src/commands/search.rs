@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use experiments::comparison::{CONFIDENCE, Choice, Comparison, compare, short};
+use experiments::comparison::{CONFIDENCE, Choice, Comparison, Trials, compare, short};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::explore::{Candidate, Descent, FOUND, Hunt, Outcome, Space, Trail};
 use experiments::files::NewFile;
@@ -181,7 +181,7 @@ impl Arguments {
                 compare(confirmed, &[metric], choice)?.into_iter().next()
             }
         };
-        let alone = confirmed.values(0, 0, metric);
+        let alone = Trials::of(confirmed, 0).values(((0, 0), metric));
         let mut out = found.told(self.trials);
         out.rows("found", [&found.in_numbers(&alone)])?;
         out.rows("comparisons", &comparison)?;

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use experiments::comparison::short;
+use experiments::comparison::{Trials, short};
 use experiments::expect::{Expectation, Expected, Judgement, Verdict, expectations, judge, looks};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::run::{Outcome, TrialKey, run_all};
+use experiments::sweep::folder::{Measured, Results};
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;
 
@@ -28,8 +29,9 @@ A sweep file says what is expected of its outcome:
 
 Trials are added (20, 40, 80, ...) until every expectation holds or fails at its confidence (95 % where none \
 is named). The expectations, cases and looks of a file share the error that the confidence allows. A mean \
-difference needs 8 differences or more other than the commonest one. The exit status is 0 if all hold, and 1 \
-if one fails or is still undecided after --max-trials. docs/experiments.md says how often verdicts are wrong.
+difference needs 8 differences or more other than the commonest one; policies that are the same in all trials \
+are told to be. The exit status is 0 if all hold, and 1 otherwise. docs/experiments.md says how often verdicts \
+are wrong.
 
 Examples:
   usar test scenarios/paper.ron
@@ -98,16 +100,13 @@ impl Arguments {
     }
 }
 
-/// The metrics of a trial.
-type Values = Vec<Option<f64>>;
-
 /// A sweep and its expectations.
 struct Suite {
     file: String,
     experiment: Arc<Experiment>,
     expected: Vec<Expected>,
-    /// Values of the trials so far, by case, policy and trial; or the reason why a trial has none.
-    values: BTreeMap<(usize, usize, u32), Result<Values, String>>,
+    /// The trials so far.
+    results: Results,
 }
 
 impl Suite {
@@ -123,7 +122,7 @@ impl Suite {
             file: file.display().to_string(),
             experiment: Arc::new(experiment),
             expected,
-            values: BTreeMap::new(),
+            results: Results::new(),
         })
     }
 
@@ -140,7 +139,7 @@ impl Suite {
             self.run_up_to(*look, &open, progress)?;
             open.retain(|(case, place)| {
                 let found = self.judge(*case, *place, *look, intervals);
-                let is_open = found.judgement.verdict == Verdict::Undecided;
+                let is_open = matches!(found.judgement.verdict, Verdict::Undecided | Verdict::Same);
                 tested.insert((*case, *place), found);
                 is_open
             });
@@ -170,7 +169,7 @@ impl Suite {
         };
         let is_missing = |key: &TrialKey| {
             let place = (key.case, key.policy, key.trial);
-            key.trial <= trials && !self.values.contains_key(&place) && needed(key.case, key.policy)
+            key.trial <= trials && !self.results.contains_key(&place) && needed(key.case, key.policy)
         };
         let mut keys: Vec<TrialKey> = self.experiment.keys(None).filter(is_missing).collect();
         // Sorted by seed, so that policies that decide alike share their trials.
@@ -182,11 +181,8 @@ impl Suite {
         let shared = Arc::clone(&self.experiment);
         let run = Arc::new(move |key: &_, sessions: &mut _, halt: &_| shared.run(key, sessions, halt));
         let is_whole = run_all(keys, progress.limits(None), run, &STOP, |outcome: Outcome| {
-            let value = match outcome.record() {
-                Some(record) => Ok(self.experiment.metrics.measure(record)),
-                None => Err(outcome.failure().unwrap_or_default()),
-            };
-            self.values.insert((outcome.key.case, outcome.key.policy, outcome.key.trial), value);
+            let measured = Measured::of(&outcome, &self.experiment.metrics);
+            self.results.insert((outcome.key.case, outcome.key.policy, outcome.key.trial), measured);
             bar.inc(1);
             Ok(())
         })?;
@@ -197,13 +193,11 @@ impl Suite {
     fn judge(&self, case: usize, place: usize, trials: u32, intervals: usize) -> Tested {
         let expected = &self.expected[place];
         let of =
-            |policy: usize| (1..=trials).filter_map(move |trial| self.values.get(&(case, policy, trial)));
-        let trouble =
-            self.policies(place).into_iter().flat_map(of).find_map(|value| value.as_ref().err().cloned());
-        let value = |policy: usize, metric: usize| {
-            of(policy).map(|value| value.as_ref().ok().and_then(|values| values[metric])).collect()
-        };
-        let mut judgement = judge(expected, value, intervals, trials == self.experiment.trials);
+            |policy: usize| (1..=trials).filter_map(move |trial| self.results.get(&(case, policy, trial)));
+        let trouble = self.policies(place).into_iter().flat_map(of).find_map(|one| one.failure.clone());
+        let trouble = trouble.map(String::from);
+        let looked_at = Trials::new(&self.experiment.metrics, &self.results, 1..=trials);
+        let mut judgement = judge(expected, &looked_at, case, intervals, trials == self.experiment.trials);
         if trouble.is_some() {
             judgement.verdict = Verdict::Fails;
         }
@@ -223,6 +217,7 @@ fn verdict_name(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Holds => "holds",
         Verdict::Fails => "FAILS",
+        Verdict::Same => "THE SAME",
         Verdict::Undecided => "UNDECIDED",
     }
 }
@@ -251,7 +246,7 @@ fn write_junit(path: &Path, tested: &[Tested]) -> Result<(), Failure> {
         for one in suite_of {
             let mut status = match one.judgement.verdict {
                 Verdict::Holds => TestCaseStatus::success(),
-                Verdict::Fails | Verdict::Undecided => TestCaseStatus::non_success(NonSuccessKind::Failure),
+                _ => TestCaseStatus::non_success(NonSuccessKind::Failure),
             };
             if one.judgement.verdict != Verdict::Holds {
                 status.set_message(format!("{}: {}", verdict_name(one.judgement.verdict), observed(one)));

@@ -172,6 +172,40 @@ fn a_study_of_deceit_tells_what_lies_cost_and_how_well_estimators_judge() {
     assert!(refused.status.code() == Some(2) && !here.join("nowhere").exists());
 }
 
+/// Two pairs name no breakdown point. Of a cost, less is better, and the differences are those of `compare`.
+#[test]
+fn a_study_of_deceit_judges_as_a_comparison_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let here = folder.path();
+    std::fs::write(here.join("two.ron"), TWO).unwrap();
+    std::fs::write(here.join("lied.ron"), LIED.replace("rescuees.total", "energy_per_rescuee.total"))
+        .unwrap();
+    let few = succeeds(&usar(here, "study deceit lied.ron --quiet --trials 2 --out few --json"));
+    let few: serde_json::Value = serde_json::from_str(&few).unwrap();
+    let table = succeeds(&usar(here, "study deceit few"));
+    let reason = "no breakdown point: 2 of the 6 distinct pairs of trials that a test takes";
+    assert_eq!(table.split_whitespace().collect::<Vec<_>>().join(" ").matches(reason).count(), 2, "{table}");
+    assert!(few["tables"]["policies"][0]["breaks down"][0].is_null(), "{few}");
+    let csv = std::fs::read_to_string(here.join("few/deceit-above-draw.csv")).unwrap();
+    assert!(csv.lines().skip(1).all(|row| row.ends_with(",,")), "no interval of two pairs: {csv}");
+
+    succeeds(&usar(here, "study deceit lied.ron --quiet"));
+    let compared = "compare results/lied --json --metric energy_per_rescuee.total --baseline RANDOM";
+    let compared: serde_json::Value = serde_json::from_str(&succeeds(&usar(here, compared))).unwrap();
+    let mut above = csv::Reader::from_path(here.join("results/lied/deceit-above-draw.csv")).unwrap();
+    let mut found = 0;
+    for row in above.records().map(Result::unwrap) {
+        let liars = format!("Count({})", &row[2]);
+        let all = compared["tables"]["comparisons"].as_array().unwrap();
+        let is_it = |one: &&serde_json::Value| one["a"] == row[0] && one["axes"][0][1] == liars.as_str();
+        let there = all.iter().find(is_it).unwrap();
+        let difference = there["difference"].as_f64().unwrap();
+        assert!((row[3].parse::<f64>().unwrap() - difference).abs() < 1e-9, "{row:?}, {there}");
+        found += usize::from(there["is_of_sums"] == true);
+    }
+    assert_eq!(found, 4, "some trial has few rescuees: {compared}");
+}
+
 /// Who knows the truth decides the same whoever lies; the mean of all assignments is worth 0 by itself.
 #[test]
 fn policies_are_judged_by_the_outcomes_of_all_assignments() {

@@ -79,3 +79,43 @@ fn what_is_no_expectation_is_told_before_anything_runs() {
         refused(here, 2, format!("{verb} expected.ron").as_str(), &both);
     }
 }
+
+/// In 20 s nobody can be rescued, and two names of one policy end alike to the last bit.
+#[test]
+fn what_cannot_differ_is_the_same_in_every_command() {
+    let folder = place();
+    let here = folder.path();
+    let sweep = "(name: \"floor\", scenario: \"short.ron\", policies: [\"RNE\", \"DIS\", \"twin=DIS\"],
+        trials: 20, set: {\"duration_s\": 20.0}, margins: {\"rescuees.total\": 5.0}, baseline: \"DIS\",
+        primary: [\"rescuees.total\", \"distance\"], keep: Trials,
+        expect: [\"rescuees.total: RNE = DIS within 5\", \"distance: twin > DIS\"])";
+    std::fs::write(here.join("floor.ron"), sweep).unwrap();
+    succeeds(&usar(here, "sweep floor.ron --quiet"));
+    let json: Value =
+        serde_json::from_str(&succeeds(&usar(here, "compare results/floor --json --metric all"))).unwrap();
+    let of = |metric: &str, a: &str| {
+        let all = json["tables"]["comparisons"].as_array().unwrap();
+        all.iter().find(|one| one["metric"] == metric && one["a"] == a).unwrap().clone()
+    };
+    for (metric, a) in [("rescuees.total", "RNE"), ("rescuees.total", "twin"), ("distance", "twin")] {
+        let one = of(metric, a);
+        assert_eq!((&one["verdict"], &one["difference"]), (&"same".into(), &0.0.into()), "{metric}, {a}");
+        assert!(one["p"].is_null() && one["interval"].is_null(), "nothing is tested: {one}");
+    }
+    assert_ne!(of("distance", "RNE")["verdict"], "same");
+    let text = succeeds(&usar(here, "compare results/floor"));
+    assert!(text.starts_with("rescuees.total: RNE the same as DIS, twin the same as DIS."), "{text}");
+    assert!(text.contains("The same means the same in all trials: nothing is tested."), "{text}");
+    assert!(!text.contains("equivalent") && !text.contains("within"), "{text}");
+    succeeds(&usar(here, "report results/floor"));
+    assert!(
+        std::fs::read_to_string(here.join("results/floor/report.html"))
+            .unwrap()
+            .contains("RNE and DIS are the same in all trials (n = 20)")
+    );
+    let output = usar(here, "test floor.ron --max-trials 20 --quiet");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "an expectation that nothing can refute does not hold");
+    assert_eq!(text.matches("THE SAME  floor.ron: ").count(), 2, "{text}");
+    assert_eq!(text.matches("n = 20; the same in all trials)").count(), 2, "{text}");
+}

@@ -14,7 +14,7 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     let folder = place();
     let here = folder.path();
     refused(here, 2, "report results", &["results: is not the folder of a sweep"]);
-    succeeds(&usar(here, "sweep grid.ron --set duration_s=120 --trials 3"));
+    succeeds(&usar(here, "sweep grid.ron --set duration_s=85 --trials 6"));
     assert_eq!(succeeds(&usar(here, "report results/grid")), "results/grid/report.html\n");
     let results = here.join("results/grid");
     let read = |name: &str| std::fs::read_to_string(results.join(name)).unwrap();
@@ -52,7 +52,7 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
         "faster carriers",
         "roles.carrier.speed_mps=1.5",
         "usar sweep sweep.ron",
-        "duration_s: 120",
+        "duration_s: 85",
         "Holm",
     ] {
         assert!(page.contains(words), "{words}");
@@ -87,7 +87,7 @@ fn a_report_is_one_file_with_figures_and_the_numbers_behind_them() {
     refused(here, 2, "report results/grid --case 5", &["--case: must be from 1 to 4, found 5"]);
     refused(here, 2, "report results/grid --metric luck", &["unknown metric \"luck\""]);
     // The sweep can still be continued in a folder with a report.
-    succeeds(&usar(here, "sweep grid.ron --set duration_s=120 --trials 3"));
+    succeeds(&usar(here, "sweep grid.ron --set duration_s=85 --trials 6"));
 }
 
 #[test]

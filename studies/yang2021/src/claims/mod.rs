@@ -12,6 +12,7 @@
 //! - *Does not hold*: neither of these, and the interval of some part lies entirely on the other side, at
 //!   95 % shared by the parts (Bonferroni). With three parts, each interval is at 98.3 %. A true claim is
 //!   called false in at most about 2.5 % of experiments.
+//! - *The same*: the quantities of each part are the same in all trials.
 //! - *Undecided*: otherwise.
 
 mod examples;
@@ -20,24 +21,20 @@ mod papers;
 mod power;
 
 use experiments::Failure;
-use experiments::comparison::{CONFIDENCE, TOST_CONFIDENCE};
+use experiments::comparison::{CONFIDENCE, Pairs, Quantity, Standing, TOST_CONFIDENCE, Trials};
 use experiments::metric::Catalogue;
 use experiments::sweep::folder::Folder;
 use serde::Serialize;
 use statistics::Moments;
-use statistics::bootstrap::interval;
 use statistics::paired::{detectable, pairs_needed};
 
-use crate::scenarios::{PAPERS_TRIALS, Standing, margins};
+use crate::scenarios::{PAPERS_TRIALS, Standing as Role, margins};
 
 pub use examples::{Example, examples};
 pub use files::{write_authors_columns, write_claims, write_examples, write_power};
 pub use papers::CLAIMS;
 use power::TIMES;
 pub use power::{Power, Shares, power};
-
-/// With fewer pairs, a claim stays undecided: chance signs alone would decide it too often.
-const LEAST_PAIRS: usize = 6;
 
 /// A claim that the paper makes about its experiment.
 #[derive(Debug)]
@@ -85,6 +82,9 @@ pub enum Verdict {
     /// it is the best or within the margin of the best.
     #[serde(rename = "holds or within margin")]
     WithinMargin,
+    /// The quantities of each comparison are the same in all trials.
+    #[serde(rename = "the same")]
+    Same,
     /// The trials do not decide.
     #[serde(rename = "undecided")]
     Undecided,
@@ -97,6 +97,7 @@ impl Verdict {
             Self::Holds => "holds",
             Self::DoesNotHold => "does not hold",
             Self::WithinMargin => "holds or within margin",
+            Self::Same => "the same",
             Self::Undecided => "undecided",
         }
     }
@@ -107,7 +108,9 @@ impl Verdict {
             Self::DoesNotHold
         } else if worlds.clone().all(|verdict| verdict == Self::Holds) {
             Self::Holds
-        } else if worlds.all(|verdict| verdict != Self::Undecided) {
+        } else if worlds.clone().all(|verdict| verdict == Self::Same) {
+            Self::Same
+        } else if worlds.all(|verdict| matches!(verdict, Self::Holds | Self::WithinMargin)) {
             Self::WithinMargin
         } else {
             Self::Undecided
@@ -124,7 +127,9 @@ impl Verdict {
             })
         };
         let holds = |part: &PartFinding| on(part.interval, part.claimed);
-        if !parts.is_empty() && parts.iter().all(holds) {
+        if !parts.is_empty() && parts.iter().all(|part| part.standing == Standing::Same) {
+            Self::Same
+        } else if !parts.is_empty() && parts.iter().all(holds) {
             Self::Holds
         } else if !parts.is_empty() && parts.iter().all(|part| holds(part) || part.is_equivalent) {
             Self::WithinMargin
@@ -158,12 +163,15 @@ impl Side {
 pub struct PartFinding {
     /// Side that the paper claims for the first quantity.
     pub claimed: Side,
-    /// Differences (first minus second) of the pairs in which both are defined, with the numbers of their
-    /// trials.
-    pub differences: Vec<(u32, f64)>,
-    /// Mean of the differences.
+    /// What the pairs can say.
+    pub standing: Standing,
+    /// Pairs in which both are defined.
+    pub n: usize,
+    /// First minus second: the mean difference, or the difference of ratios of sums.
     pub difference: Option<f64>,
-    /// 95 % interval of the mean difference.
+    /// Standard deviation of the differences.
+    pub sd: Option<f64>,
+    /// 95 % interval of the difference.
     pub interval: Option<[f64; 2]>,
     /// Interval at 95 % shared by all parts of the claim.
     pub shared_interval: Option<[f64; 2]>,
@@ -174,15 +182,9 @@ pub struct PartFinding {
 }
 
 impl PartFinding {
-    /// Standard deviation of the differences.
-    pub fn sd(&self) -> Option<f64> {
-        let values: Vec<f64> = self.differences.iter().map(|(_, difference)| *difference).collect();
-        Moments::of(&values).sd
-    }
-
     /// The difference that 80 % of experiments with the paper's number of trials would find.
     pub(crate) fn least_found(&self) -> Option<f64> {
-        detectable(self.sd()?, PAPERS_TRIALS as usize)
+        detectable(self.sd?, PAPERS_TRIALS as usize)
     }
 }
 
@@ -193,6 +195,8 @@ pub struct Finding {
     pub verdict: Verdict,
     /// The results of the parts, in the order of the claim.
     pub parts: Vec<PartFinding>,
+    /// The differences of all parts, for each trial that every part has.
+    pub trials: Vec<Vec<f64>>,
 }
 
 /// With fewer trials, no power is computed.
@@ -204,7 +208,7 @@ const POWER_SEED: u64 = 1;
 /// The results of a scenario's trials for each claim.
 pub struct Judged {
     /// The role of the scenario in the study.
-    pub standing: Standing,
+    pub standing: Role,
     /// Name of the scenario.
     pub scenario: String,
     /// Catalogue of the scenario's metrics.
@@ -224,7 +228,7 @@ impl Judged {
     ///
     /// # Errors
     /// The sweep lacks a policy of a claim.
-    pub fn of(folder: &Folder, standing: Standing, trials: u32) -> Result<Self, Failure> {
+    pub fn of(folder: &Folder, standing: Role, trials: u32) -> Result<Self, Failure> {
         let all =
             |trials| CLAIMS.iter().map(|claim| judge(folder, claim, trials)).collect::<Result<Vec<_>, _>>();
         let (of_few, of_all) = (all(PAPERS_TRIALS)?, all(trials)?);
@@ -248,27 +252,34 @@ pub(crate) fn verdicts_over_worlds(judged: &[Judged]) -> Option<Vec<Verdict>> {
 /// # Errors
 /// The sweep lacks a policy of the claim.
 pub fn judge(folder: &Folder, claim: &Claim, trials: u32) -> Result<Finding, Failure> {
-    let count = claim.parts.len();
-    let find = |part: &Part| {
-        let differences = differences(folder, part, trials)?;
-        let is_equivalent = is_within(&differences, margin_of(part));
-        Ok(PartFinding { is_equivalent, ..part_finding(part, differences, count) })
+    let metrics = &folder.experiment().metrics;
+    let trials = Trials::new(metrics, folder.results(), 1..=trials);
+    let place = |[policy, metric]: [&str; 2]| -> Result<Quantity, Failure> {
+        Ok(((0, place_of(folder, policy)?), metrics.named(metric)?))
     };
-    let parts = claim.parts.iter().map(find).collect::<Result<Vec<_>, Failure>>()?;
-    Ok(Finding { verdict: Verdict::of(&parts), parts })
+    let pair = |part: &Part| Ok([place(part.a)?, place(part.b)?]);
+    let pairs = claim.parts.iter().map(pair).collect::<Result<Vec<_>, Failure>>()?;
+    let part = |(part, pair): (&Part, &[Quantity; 2])| finding(part, &trials.pairs(*pair), pairs.len());
+    let parts: Vec<PartFinding> = claim.parts.iter().zip(&pairs).map(part).collect();
+    let columns: Vec<Vec<f64>> = trials.joint(&pairs).iter().map(Pairs::differences).collect();
+    let row = |trial: usize| columns.iter().map(|column| column[trial]).collect();
+    let trials = (0..columns[0].len()).map(row).collect();
+    Ok(Finding { verdict: Verdict::of(&parts), parts, trials })
 }
 
-fn part_finding(part: &Part, differences: Vec<(u32, f64)>, count: usize) -> PartFinding {
-    let values: Vec<f64> = differences.iter().map(|(_, difference)| *difference).collect();
-    let interval = |confidence| interval(&values, confidence).filter(|_| values.len() >= LEAST_PAIRS);
+/// What pairs say of one of so many parts.
+fn finding(part: &Part, pairs: &Pairs, count: usize) -> PartFinding {
+    let differences = pairs.differences();
     PartFinding {
         claimed: part.claimed,
-        difference: Moments::of(&values).mean,
-        interval: interval(CONFIDENCE),
-        shared_interval: interval(1.0 - (1.0 - CONFIDENCE) / count as f64),
-        is_equivalent: false,
-        pairs_needed: pairs_needed(&values),
-        differences,
+        standing: pairs.standing(),
+        n: differences.len(),
+        difference: pairs.difference(),
+        sd: Moments::of(&differences).sd,
+        interval: pairs.interval(CONFIDENCE),
+        shared_interval: pairs.interval(1.0 - (1.0 - CONFIDENCE) / count as f64),
+        is_equivalent: is_within(pairs, margin_of(part)),
+        pairs_needed: pairs_needed(&differences),
     }
 }
 
@@ -279,22 +290,10 @@ fn margin_of(part: &Part) -> Option<f64> {
     declared.map(|(_, margin)| margin).filter(|_| metric == part.b[1])
 }
 
-/// Whether the mean difference is shown to be smaller than the margin.
-fn is_within(differences: &[(u32, f64)], margin: Option<f64>) -> bool {
-    let values: Vec<f64> = differences.iter().map(|(_, difference)| *difference).collect();
-    let interval = interval(&values, TOST_CONFIDENCE).filter(|_| values.len() >= LEAST_PAIRS);
-    let (Some(margin), Some([low, high])) = (margin, interval) else { return false };
+/// Whether the difference is shown to be smaller than the margin.
+fn is_within(pairs: &Pairs, margin: Option<f64>) -> bool {
+    let (Some(margin), Some([low, high])) = (margin, pairs.interval(TOST_CONFIDENCE)) else { return false };
     -margin < low && high < margin
-}
-
-/// First minus second, trial by trial, where both are defined.
-fn differences(folder: &Folder, part: &Part, trials: u32) -> Result<Vec<(u32, f64)>, Failure> {
-    let metrics = &folder.experiment().metrics;
-    let place =
-        |[policy, metric]: [&str; 2]| Ok::<_, Failure>((place_of(folder, policy)?, metrics.named(metric)?));
-    let (a, b) = (place(part.a)?, place(part.b)?);
-    let value = |(policy, metric): (usize, usize), trial: u32| folder.value((0, policy, trial), metric);
-    Ok((1..=trials).filter_map(|trial| Some((trial, value(a, trial)? - value(b, trial)?))).collect())
 }
 
 fn place_of(folder: &Folder, policy: &str) -> Result<usize, Failure> {
@@ -323,8 +322,10 @@ mod tests {
     fn parts(intervals: &[[f64; 4]], claimed: Side) -> Vec<PartFinding> {
         let part = |[low, high, wide_low, wide_high]: &[f64; 4]| PartFinding {
             claimed,
-            differences: Vec::new(),
+            standing: Standing::Judged,
+            n: 40,
             difference: None,
+            sd: None,
             interval: Some([*low, *high]),
             shared_interval: Some([*wide_low, *wide_high]),
             is_equivalent: false,
@@ -367,8 +368,8 @@ mod tests {
         found[1].is_equivalent = true;
         assert_eq!(Verdict::of(&found), Verdict::WithinMargin);
         let within = |half: f64, margin| {
-            let differences = (1..=40).map(|i| (i, if i % 2 == 0 { half } else { -half }));
-            is_within(&differences.collect::<Vec<_>>(), margin)
+            let a = (1..=40).map(|i| if i % 2 == 0 { half } else { -half }).collect();
+            is_within(&Pairs { a, b: vec![0.0; 40], ..Pairs::default() }, margin)
         };
         assert!(within(1.0, Some(5.0)));
         assert!(!within(30.0, Some(5.0)));

@@ -50,7 +50,7 @@ pub struct Power {
 /// Verdicts follow the rules of [`super::judge`], but with paired t intervals, since thousands of
 /// bootstraps would take hours.
 pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
-    let trials = trials_of(finding);
+    let trials = &finding.trials;
     if few < 2 || trials.len() < TIMES * few {
         return None;
     }
@@ -63,7 +63,7 @@ pub fn power(finding: &Finding, few: usize, seed: u64) -> Option<Power> {
             .collect();
         verdict(&claimed, |part| t_of(chosen.iter().map(|trial| trial[part])), few_limits)
     }));
-    let effects: Vec<f64> = (0..claimed.len()).map(|part| effect(&trials, part)).collect();
+    let effects: Vec<f64> = (0..claimed.len()).map(|part| effect(trials, part)).collect();
     let leaning = leaning(&effects, &claimed);
     if leaning == Verdict::Undecided {
         return Some(Power { of_few, leaning, pairs_needed: None });
@@ -102,20 +102,6 @@ impl Shares {
         let [holds, does_not_hold] = counts.map(|count| f64::from(count) / EXPERIMENTS as f64);
         Self { holds, does_not_hold }
     }
-}
-
-/// The differences of all parts, for each trial that every part has.
-fn trials_of(finding: &Finding) -> Vec<Vec<f64>> {
-    let Some((first, others)) = finding.parts.split_first() else { return Vec::new() };
-    let value = |differences: &[(u32, f64)], trial: u32| {
-        let place = differences.binary_search_by_key(&trial, |(number, _)| *number).ok()?;
-        Some(differences[place].1)
-    };
-    let row = |(trial, difference): &(u32, f64)| {
-        let rest = others.iter().map(|part| value(&part.differences, *trial));
-        std::iter::once(Some(*difference)).chain(rest).collect::<Option<Vec<f64>>>()
-    };
-    first.differences.iter().filter_map(row).collect()
 }
 
 /// Student's t of a sample's mean. Without any spread, it is 0 or the largest number with the sign of the
@@ -202,6 +188,8 @@ fn least_pairs(reaches: impl Fn(u32) -> bool) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
+    use experiments::comparison::Standing;
+
     use super::super::PartFinding;
     use super::*;
 
@@ -211,17 +199,19 @@ mod tests {
         let share = |i: u32| (f64::from(i) + 0.5) / f64::from(trials);
         let values: Vec<f64> = (0..trials).map(|i| normal.inverse_cdf(share(i))).collect();
         let sd = Moments::of(&values).sd.unwrap();
-        let differences = values.iter().zip(1..).map(|(value, trial)| (trial, mean + value / sd)).collect();
         let part = PartFinding {
             is_equivalent: false,
             claimed: Side::More,
-            differences,
+            standing: Standing::Judged,
+            n: values.len(),
             difference: None,
+            sd: None,
             interval: None,
             shared_interval: None,
             pairs_needed: None,
         };
-        Finding { verdict: Verdict::Undecided, parts: vec![part] }
+        let trials = values.iter().map(|value| vec![mean + value / sd]).collect();
+        Finding { verdict: Verdict::Undecided, parts: vec![part], trials }
     }
 
     #[test]
@@ -248,7 +238,7 @@ mod tests {
         assert_eq!(power(&finding(0.5, 49), 10, 1), None);
         assert!(power(&finding(0.0001, 200), 10, 1).unwrap().pairs_needed.is_none());
         let mut nothing = finding(0.5, 200);
-        nothing.parts[0].differences.iter_mut().for_each(|(_, difference)| *difference = 0.0);
+        nothing.trials.iter_mut().for_each(|row| row[0] = 0.0);
         let nothing = power(&nothing, 10, 1).unwrap();
         assert_eq!((nothing.leaning, nothing.pairs_needed), (Verdict::Undecided, None));
     }

@@ -23,7 +23,7 @@ pub(crate) fn claims_table(judged: &Judged) -> Table {
                 number(all.difference),
                 range(all.interval),
                 range(all.shared_interval),
-                right(all.differences.len()),
+                right(all.n),
                 right(format!("{} ({})", or_dash(few.difference, short), between(few.interval))),
             ]);
         }
@@ -120,7 +120,8 @@ fn reading(world: &str) -> &str {
 
 /// How often each verdict on a claim occurs, in words.
 fn counted(worlds: &[&Judged], claim: usize) -> String {
-    let all = [Verdict::Holds, Verdict::WithinMargin, Verdict::DoesNotHold, Verdict::Undecided];
+    let all =
+        [Verdict::Holds, Verdict::WithinMargin, Verdict::DoesNotHold, Verdict::Same, Verdict::Undecided];
     let is = |world: &&&Judged, verdict| world.of_all[claim].verdict == verdict;
     let counts = all.map(|verdict| (worlds.iter().filter(|world| is(world, verdict)).count(), verdict));
     let found = counts.iter().filter(|(count, _)| *count > 0);

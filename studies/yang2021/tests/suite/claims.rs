@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use experiments::comparison::short;
+use experiments::sweep::folder::Folder;
 use xtask::pages;
-use yang2021::claims::CLAIMS;
+use yang2021::claims::{CLAIMS, judge};
 
-use crate::support::{program, read, refuses as refused, root, succeeds, two_minutes as place, usar};
+use crate::support::{program, read, refuses as refused, root, succeeds, two_minutes, usar};
 
 /// Checks the files that `usar yang2021 claims` writes.
 fn has_the_files(results: &Path) {
@@ -164,9 +166,67 @@ fn the_papers_experiment_and_the_pages_that_tell_of_it() {
     }
 }
 
+/// The sums of a policy's costs and rescuees of a task, from `trials.csv`, as a ratio.
+fn ratio(results: &Path, policy: &str, task: &str) -> f64 {
+    let mut table = csv::Reader::from_path(results.join("trials.csv")).unwrap();
+    let header = table.headers().unwrap().clone();
+    let place = |name: &str| header.iter().position(|known| known == name).unwrap();
+    let [energy, rescuees] = ["energy", "rescuees"].map(|name| place(&format!("{name}_{task}")));
+    let rows: Vec<_> = table.records().map(Result::unwrap).filter(|row| &row[0] == policy).collect();
+    let sum = |column: usize| rows.iter().map(|row| row[column].parse::<f64>().unwrap()).sum::<f64>();
+    sum(energy) / sum(rescuees)
+}
+
+/// Where trials have few rescuees or none, each command compares the ratios of sums of the same trials.
+#[test]
+fn all_commands_agree_on_a_cost_per_rescuee() {
+    let place = two_minutes();
+    let folder = place.path();
+    let sweep =
+        "(name: \"few\", scenario: \"short.ron\", set: {\"duration_s\": 81.0}, keep: Trials, trials: 20,
+        policies: [\"RNE\", \"DIS\", \"ENG\", \"HP_DIS\"], primary: [\"energy_per_rescuee.hard\"],
+        baseline: \"DIS\", expect: [\"energy_per_rescuee.hard: RNE > DIS\"])";
+    std::fs::write(folder.join("few.ron"), sweep).unwrap();
+    let told = succeeds(&usar(folder, "sweep few.ron --quiet"));
+    let results = folder.join("results/few");
+    let [rne, dis] = ["RNE", "DIS"].map(|policy| ratio(&results, policy, "hard"));
+    assert!(told.contains(&format!("{} ±", short(rne))), "{rne}: {told}");
+    let is = |found: Option<f64>, expected: f64| (found.unwrap() - expected).abs() < 1e-9;
+    let json = |output: Vec<u8>| -> serde_json::Value { serde_json::from_slice(&output).unwrap() };
+    let compared = json(succeeds(&usar(folder, "compare results/few --json")).into_bytes());
+    let compared = &compared["tables"]["comparisons"][0];
+    assert_eq!(
+        (&compared["a"], &compared["n"], &compared["is_of_sums"]),
+        (&"RNE".into(), &20.into(), &true.into())
+    );
+    assert!(is(compared["difference"].as_f64(), rne - dis), "{compared}");
+    let tested = json(usar(folder, "test few.ron --max-trials 20 --quiet --json").stdout);
+    let tested = &tested["tables"]["expectations"][0];
+    assert!(tested["n"] == 20 && is(tested["observed"].as_f64(), rne - dis), "{tested}");
+    let is_clear = |interval: &serde_json::Value, sign: f64| {
+        (0..2).all(|end| interval[end].as_f64().is_some_and(|end| end * sign > 0.0))
+    };
+    let holds = is_clear(&tested["interval"], 1.0);
+    assert_eq!(tested["verdict"] == "holds", holds, "{tested}");
+    assert!(!holds || compared["verdict"] == "worse", "the cautious interval is the wider one: {compared}");
+    succeeds(&usar(folder, "report results/few"));
+    let page = read(&results.join("report.html"));
+    assert!(page.contains(&short((rne - dis).abs())) && page.contains(&short(rne)), "{rne} {dis}");
+    let folder = Folder::read(&results, &policies::standard()).unwrap();
+    let found = |claim: &str| {
+        let claim = CLAIMS.iter().find(|known| known.name == claim).unwrap();
+        judge(&folder, claim, 20).unwrap().parts.swap_remove(0)
+    };
+    let [policies, tasks] = ["energy, hard", "dearer energy"].map(found);
+    assert!(policies.n == 20 && is(policies.difference, rne - dis), "{policies:?}");
+    assert!(tasks.n == 20 && is(tasks.difference, rne - ratio(&results, "RNE", "easy")), "{tasks:?}");
+    let ends = [0, 1].map(|end| compared["interval"][end].as_f64().unwrap());
+    assert_eq!(policies.interval, Some(ends), "one interval");
+}
+
 #[test]
 fn readings_stand_for_every_combination_and_are_named_by_what_differs() {
-    let place = place();
+    let place = two_minutes();
     let folder = place.path();
     let sweep = |readings: &str, policies: &str| {
         let text = format!(

@@ -1,6 +1,6 @@
 //! `usar study deceit`: what lies cost each policy, how many liars it bears, and how well estimators judge.
 
-use experiments::comparison::{digits, short};
+use experiments::comparison::{Standing, digits, short};
 use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay};
 use experiments::experiment::Experiment;
 use experiments::files::NewFile;
@@ -145,7 +145,11 @@ fn breakdown(one: &Borne, counts: &[u32]) -> Entry {
     let all = counts.last().copied().unwrap_or_default();
     let at = |place: usize| counts.get(place).copied().unwrap_or_default();
     let words = match (one.breakdown.safe, one.breakdown.broken) {
-        (None, _) => "no room shown".to_owned(),
+        (None, _) => match one.breakdown.standing {
+            Standing::Judged => "no room shown".to_owned(),
+            Standing::Same => "the same as the draw".to_owned(),
+            few @ Standing::TooFew { .. } => format!("no breakdown point: {few}"),
+        },
         (Some(safe), Some(broken)) => format!("between {} and {} of {all}", at(safe), at(broken)),
         (Some(safe), None) => format!("above {} of {all}, or never", at(safe)),
     };

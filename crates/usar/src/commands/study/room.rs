@@ -1,11 +1,10 @@
 //! `usar study room`: how much grouping matters in a world.
 
-use experiments::comparison::short;
+use experiments::comparison::{Trials, short};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::sweep::folder::Folder;
 use reports::table::{between, mean, number, range};
 use serde::Serialize;
-use statistics::{Moments, cautious};
 
 use crate::arguments::{PoliciesArgument, ProgressArguments, ShownArguments, count, limit, one_seed};
 use crate::input::read_sweep;
@@ -173,21 +172,18 @@ fn of_all(worlds: &[World]) -> Table {
 fn rows(folder: &Folder) -> Result<Vec<Row>, Failure> {
     let experiment = folder.experiment();
     let metric = experiment.metrics.named("rescuees.total")?;
-    let value = |policy: usize, trial: u32| folder.value((0, policy, trial), metric);
-    let values = |policy: usize| (1..=experiment.trials).filter_map(move |trial| value(policy, trial));
+    let (trials, of) = (Trials::of(folder, 0), |policy: usize| ((0, policy), metric));
     let draw = experiment.policies.iter().position(|policy| policy.label == DRAW);
     let draw = draw.ok_or_else(|| Failure::input(format!("{}: has no {DRAW}", experiment.name)))?;
-    let of_draw = Moments::of(&values(draw).collect::<Vec<_>>()).mean;
+    let of_draw = trials.moments(of(draw)).mean;
     let row = |(place, label): (usize, &str)| {
-        let pairs =
-            (1..=experiment.trials).filter_map(|trial| Some(value(place, trial)? - value(draw, trial)?));
-        let differences: Vec<f64> = pairs.collect();
-        let difference = Moments::of(&differences).mean.filter(|_| place != draw);
+        let pairs = trials.pairs([of(place), of(draw)]);
+        let difference = pairs.difference().filter(|_| place != draw);
         Row {
             policy: label.to_owned(),
-            mean: Moments::of(&values(place).collect::<Vec<_>>()).mean,
+            mean: trials.moments(of(place)).mean,
             difference,
-            interval: cautious::interval(&differences, 0.95).filter(|_| place != draw),
+            interval: pairs.cautious(0.95).filter(|_| place != draw),
             percent: difference.zip(of_draw).filter(|(_, of)| *of > 0.0).map(|(it, of)| 100.0 * it / of),
         }
     };

@@ -7,7 +7,7 @@
 //! its effect on the interval's coverage.
 
 use experiments::Failure;
-use experiments::comparison::{pairs_of, short};
+use experiments::comparison::{Trials, short};
 use experiments::experiment::Experiment;
 use experiments::sweep::folder::Folder;
 use statistics::paired::t_half_width;
@@ -58,8 +58,8 @@ impl Precision {
     fn state(&self, folder: &Folder) -> Option<State> {
         let mut state = State { half_width: 0.0, pairs: usize::MAX };
         for case in 0..folder.experiment().cases.len() {
-            let differences =
-                pairs_of(folder, self.metric, self.policies.map(|policy| (case, policy))).differences();
+            let pair = self.policies.map(|policy| ((case, policy), self.metric));
+            let differences = Trials::of(folder, case).pairs(pair).differences();
             let half_width = t_half_width(&differences).filter(|half| *half > 0.0)?;
             let enough = differences.len() >= FIRST_LOOK.min(folder.experiment().trials) as usize;
             state.half_width = state.half_width.max(half_width);
