@@ -9,7 +9,7 @@ use scenario::Scenario;
 use teaming::{Asked, Assignment, Question, Truth};
 use usar_sim::hash::PARTS;
 use usar_sim::record::TrialRecord;
-use usar_sim::robot::{ENERGY, HP};
+use usar_sim::robot::HP;
 use usar_sim::simulation::{Advance, Simulation};
 
 use crate::support::{paper_with, policy, root};
@@ -451,7 +451,7 @@ fn who_speaks_under_the_name_of_another_is_heard_after_it_whatever_its_id() {
         );
         let record = run(&paper_and(&lies), "DIS", 1);
         let asked = &record.decisions[2].question;
-        let of = |id: u32| asked.members.iter().find(|member| member.id == id).unwrap().levels[ENERGY];
+        let of = |id: u32| asked.members.iter().find(|member| member.id == id).unwrap().levels[0];
         assert_eq!(of(5), of(liar), "{liar}");
         assert_eq!(of(5), Some(100.0));
     }

@@ -49,7 +49,7 @@ impl Goldens {
     /// and delays, the trust worlds and the leak behind estimators.
     pub fn computed() -> Self {
         let small = worlds("scenarios/minimal").into_iter().map(|path| golden(&path, "RNE", None));
-        let estimators = ["Wmsr", "Hmm | Discount", "Kalman | Exclude"];
+        let estimators = ["Wmsr(f: 1, aged: false)", "Hmm | Discount", "Kalman(restart: 0) | Exclude"];
         let lied = worlds("scenarios/trust").into_iter().chain([place("scenarios/leak.ron")]).enumerate();
         let lied = lied.map(|(number, path)| {
             let policy = format!("HP_DIS <- {}", estimators[number % estimators.len()]);

@@ -33,10 +33,14 @@ impl<'t> Trials<'t> {
         Self::new(&experiment.metrics, folder.results(), numbers)
     }
 
-    /// Values of a quantity whose mean is what is said of it. For a cost per rescuee they are linearised: the
-    /// mean is the sum of the costs over the sum of the rescuees, so that trials without rescuees count, and a
-    /// total lies between its tasks but for what robots spent outside groups.
+    /// Values of a quantity whose mean is what is said of it; none of one that is censored in a trial. For a
+    /// cost per rescuee they are linearised: the mean is the sum of the costs over the sum of the rescuees,
+    /// so that trials without rescuees count, and a total lies between its tasks but for what robots spent
+    /// outside groups.
     pub fn values(&self, (cell, metric): Quantity) -> Vec<f64> {
+        if self.metrics[metric].is_censored && self.in_each((cell, metric)).contains(&None) {
+            return Vec::new();
+        }
         let of = |metric: usize| self.numbers.iter().map(move |trial| self.value((cell, metric), *trial));
         match self.metrics.sums(metric) {
             None => of(metric).flatten().collect(),
@@ -65,8 +69,8 @@ impl<'t> Trials<'t> {
         Pairs { repeated, ..self.paired(&new, pair) }
     }
 
-    /// Several pairs of quantities over the same trials: those that repeat no other in all cells together, and
-    /// in which all quantities have a value. Differences of one seed stay together.
+    /// Several pairs of quantities over the same trials: those that repeat no other in all cells together,
+    /// and in which all quantities have a value. Differences of one seed stay together.
     pub fn joint(&self, pairs: &[[Quantity; 2]]) -> Vec<Pairs> {
         let mut trials = self.new_ones(pairs);
         trials.retain(|trial| pairs.iter().all(|pair| self.parts(*pair, *trial).is_some()));
@@ -105,6 +109,9 @@ impl<'t> Trials<'t> {
                 [Some(_), Some(_)] => pairs.failed += 1,
                 _ => pairs.missing += 1,
             }
+        }
+        if pairs.undefined > 0 && pair.iter().any(|(_, metric)| self.metrics[*metric].is_censored) {
+            return Pairs { a: Vec::new(), b: Vec::new(), ..pairs };
         }
         match self.sums(trials, pair) {
             Some(sums) => pairs.of_sums(sums),

@@ -230,12 +230,12 @@ mod tests {
         let spec = |text: &str| PolicySpec::parse(text, &policies::standard()).unwrap();
         let plain = spec(" HP_DIS<-Kalman ( q: 2 ) ");
         assert_eq!((plain.label.as_str(), plain.name.as_str()), ("HP_DIS <- Kalman ( q: 2 )", "HP_DIS"));
-        assert_eq!(plain.made().options, " <- Kalman(q: 2.0, r: 25.0, gate: 6.6349, restart: 0) | Ignore");
+        assert_eq!(plain.made().options, " <- Kalman(q: 2.0, r: 25.0, gate: 6.6349, restart: 2) | Ignore");
         let text = "x=RNE(hard_rule: MeanHp) <- Both(level: Kalman, trust: Brs) | Exclude(below: 0.3)";
         let labelled = spec(text);
         assert_eq!((labelled.label.as_str(), labelled.written()), ("x", text));
         assert_eq!(spec(&labelled.plain()).made().options, labelled.made().options);
-        let end = "<- Both(level: Kalman(q: 4.0, r: 25.0, gate: 6.6349, restart: 0), trust: Brs(q: 0.01)) | \
+        let end = "<- Both(level: Kalman(q: 4.0, r: 25.0, gate: 6.6349, restart: 2), trust: Brs(q: 0.01)) | \
                    Exclude(below: 0.3, most: 0.34)";
         assert!(labelled.made().options.ends_with(end), "{}", labelled.made().options);
         assert_eq!(labelled.options(), [("hard_rule".to_owned(), "MeanHp".to_owned())]);

@@ -123,8 +123,8 @@ impl Objective {
         Self { is_opposite: !self.is_opposite, ..self }
     }
 
-    /// The same objective over many decisions, with the `mean` of an objective over a fair draw at all of them.
-    /// For a cost per rescuee, an outcome then has its part in the ratio of sums, also without rescuees: its
+    /// The same objective over many decisions, with the `mean` of an objective over a fair draw at all of
+    /// them. For a cost per rescuee, an outcome then has its part in the ratio of sums, also without rescuees: its
     /// linearised value, of which the mean over a fair draw is that ratio.
     #[must_use]
     pub fn over(self, mean: impl Fn(&Self) -> Option<f64>) -> Self {

@@ -86,7 +86,7 @@ pub(super) fn before(axes: &[Axis]) -> Vec<About> {
 /// project's term.
 pub(super) fn trials<'a>(metrics: &Catalogue) -> Columns<TrialRow<'a>> {
     let method = "The same as policy, under the name that the paper's authors use.";
-    let status = "How the trial ended: completed, nobody_can_carry, errands_over, stalled, failed, panicked \
+    let status = "How the trial ended: completed, nobody_can_carry, finished, stalled, failed, panicked \
         or timed_out.";
     let hash = "Hash of the whole course of the trial: equal hashes, equal trials, bit for bit.";
     let mut columns = columns! { TrialRow:

@@ -28,7 +28,7 @@ teaming::options! {
         /// Greatest squared error of a report in terms of its variance; a report beyond it fails.
         pub gate: f64 = 6.6349,
         /// Reports in a row that fail until a level begins anew; 0 if it never does.
-        pub restart: u32 = 0,
+        pub restart: u32 = 2,
     }
 }
 

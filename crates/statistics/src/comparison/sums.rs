@@ -4,8 +4,8 @@
 //! without rescuees are missing from it. The ratio of the sums over all trials has neither defect. A
 //! trial's *linearised value* is its contribution to that ratio: R + (cost - R rescuees) / (mean of
 //! rescuees), where R is the subject's ratio of sums, which is also their mean. Their standard deviation is
-//! therefore valid for the ratio. A test of signs takes what a trial costs beyond the ratio of *both* subjects
-//! together: if they do not differ, each pair's difference of that is as likely as its opposite.
+//! therefore valid for the ratio. A test of signs takes what a trial costs beyond the ratio of *both*
+//! subjects together: if they do not differ, each pair's difference of that is as likely as its opposite.
 
 use crate::bootstrap::statistic_interval;
 

@@ -29,9 +29,9 @@ A sweep file says what is expected of its outcome:
 
 Trials are added (20, 40, 80, ...) until every expectation holds or fails at its confidence (95 % where none \
 is named). The expectations, cases and looks of a file share the error that the confidence allows. A mean \
-difference needs 8 differences or more other than the commonest one; policies that are the same in all trials \
-are told to be. The exit status is 0 if all hold, and 1 otherwise. docs/experiments.md says how often verdicts \
-are wrong.
+difference needs 8 differences or more other than the commonest one; policies that are the same in all \
+trials are told to be. The exit status is 0 if all hold, and 1 otherwise. docs/experiments.md says how \
+often verdicts are wrong.
 
 Examples:
   usar test scenarios/paper.ron

@@ -52,7 +52,7 @@ fn scenarios_policies_roles_and_metrics_are_listed() {
     );
     let estimators = listed(&["estimators"]);
     assert!(
-        estimators.contains("Kalman\t") && estimators.contains("(q: 4.0, r: 25.0, gate: 6.6349, restart: 0)"),
+        estimators.contains("Kalman\t") && estimators.contains("(q: 4.0, r: 25.0, gate: 6.6349, restart: 2)"),
         "{estimators}"
     );
     assert!(listed(&["roles"]).contains("carrier\t6 robots; drives at 2.25 m/s"));
