@@ -102,39 +102,10 @@ pages *pages:
     cargo build --release --package usar --package usar-yang2021 --features usar/full
     cargo run --release --bin xtask -- pages {{pages}}
 
-# The results that the pages in docs/ are made of: some hours on two cores, 10 GB of disk; goes on where it was broken off
-results:
+# The results that pages are made of, by the ledger docs/results.csv: only what is older than the program is run, and it goes on where it was broken off; `--list`, `--on cluster`, or names of results
+results *arguments:
     cargo build --release --package usar --package usar-yang2021 --features usar/full
-    target/release/usar sweep scenarios/paper.ron
-    target/release/usar yang2021 claims
-    target/release/usar sweep scenarios/sweeps/turning-back.ron
-    target/release/usar sweep scenarios/sweeps/turning-back-calibrated.ron
-    target/release/usar sweep scenarios/sweeps/best-reading.ron
-    target/release/usar sweep scenarios/sweeps/readings.ron
-    target/release/usar sweep scenarios/sweeps/readings.ron --scenario scenarios/paper-calibrated.ron
-    target/release/usar sweep scenarios/sweeps/what-matters.ron
-    target/release/usar sweep scenarios/sweeps/what-matters-calibrated.ron
-    target/release/usar sweep scenarios/sweeps/what-matters-leak.ron
-    target/release/usar sweep scenarios/sweeps/right-of-way.ron
-    target/release/usar sweep scenarios/sweeps/right-of-way-crowded.ron
-    target/release/usar sweep scenarios/sweeps/when-a-robot-rests.ron
-    target/release/usar sweep scenarios/sweeps/tunnel-slow-carriers.ron
-    for world in tunnel convoy aftershocks; do target/release/usar sweep scenarios/sweeps/lies.ron --scenario scenarios/trust/$world.ron; done
-    target/release/usar sweep scenarios/sweeps/lies-field.ron
-    target/release/usar study deceit scenarios/sweeps/trust-tunnel.ron
-    for world in trust/tunnel trust/convoy trust/aftershocks trust/avalanche trust/flood leak paper-calibrated; do just matrix scenarios/$world.ron; done
-    for world in avalanche flood; do target/release/usar study deceit scenarios/sweeps/trust-fresh.ron --scenario scenarios/trust/$world.ron --policies RANDOM,RNE --out results/trust-helped-$world; done
-    target/release/usar study deceit scenarios/sweeps/trust-convoy.ron
-
-# Estimators behind rules against lies in one world (docs/whom-to-believe.md): the filter, and fresh pairs of what it names; an hour
-matrix world:
-    #!/usr/bin/env bash
-    set -euo pipefail
-    PATH=$PWD/target/release:$PATH
-    study=results/trust-regret-$(basename {{world}} .ron)
-    usar study regret scenarios/sweeps/trust-regret.ron --scenario {{world}}
-    usar study deceit scenarios/sweeps/trust-filter.ron --scenario {{world}} --replay "$study" --json > "$study/filter.json"
-    bash -c "$(python3 docs/trust/named.py {{world}} < "$study/filter.json")"
+    cargo run --release --bin xtask -- results {{arguments}}
 
 # How often each kind of interval holds the truth, and how often verdicts of `usar test` are wrong (docs/experiments.md): ten minutes
 coverage *arguments:

@@ -1,8 +1,12 @@
-//! The pages for people: links lead somewhere, options exist, every page is in the book, and prose and
-//! sources can be read in a window of 110 columns.
+//! The pages for people: links lead somewhere, options exist, every page is in the book, prose and sources
+//! can be read in a window of 110 columns, and the ledger of results tells what numbers are of.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
+
+use usar_sim::BITS;
+use xtask::results::{self, HEAD, Purpose, Row};
 
 use crate::support::{root, rust_files};
 
@@ -182,4 +186,108 @@ fn commands_on_the_pages_have_the_options_of_the_program() {
     assert_eq!(unknown("usar sweep x.ron --trails 3 --quiet", &helps), ["--trails"]);
     assert_eq!(unknown("usar swep x.ron", &helps), ["swep"]);
     assert_eq!(unknown("usar cluster submit x.ron --trails 3", &helps), ["--trails"]);
+}
+
+/// Verdicts from before the ledger on seeds that an earlier run had used: starts of the names of both.
+const KNOWN_OVERLAPS: [(&str, &str, &str); 8] = [
+    ("when-a-robot-rests", "rne-loses", "another world"),
+    ("paper-500001", "paper-search", "another world, whose search had reserved them"),
+    ("rivals", "rne-wins", "another world"),
+    ("rivals", "rivals", "nine worlds of one study"),
+    ("trust-fresh", "trust-fresh", "seven worlds of one study"),
+    ("trust-helped", "trust-fresh", "another policy, and its page says so"),
+    ("trust-helped", "trust-helped", "two worlds of one study"),
+    ("room-", "room-", "eighteen worlds of one study"),
+];
+
+/// Seeds of `usar search` by default, with as many trials as it takes; no verdict of a study is on them.
+const RESERVED: RangeInclusive<u64> = 400_001..=600_000;
+
+/// Whether two ranges have a seed in common.
+fn meet(a: &RangeInclusive<u64>, b: &RangeInclusive<u64>) -> bool {
+    a.start() <= b.end() && b.start() <= a.end()
+}
+
+/// Whether two rows have a seed in common.
+fn share_seeds(row: &Row, earlier: &Row) -> bool {
+    row.ranges().iter().any(|a| earlier.ranges().iter().any(|b| meet(a, b)))
+}
+
+#[test]
+fn verdicts_are_on_seeds_that_no_earlier_run_used() {
+    let (rows, mut met) = (results::read(&root()), BTreeSet::new());
+    for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.purpose == Purpose::Judge) {
+        for earlier in rows[..i].iter().filter(|earlier| share_seeds(row, earlier)) {
+            let is_it =
+                |(a, b, _): &(&str, &str, &str)| row.output.starts_with(a) && earlier.output.starts_with(b);
+            let known = KNOWN_OVERLAPS.iter().position(is_it);
+            let (name, seeds) = (&row.output, &row.seeds);
+            assert!(known.is_some(), "{name}: seeds {seeds}: {} has used some of them", earlier.output);
+            met.extend(known);
+        }
+        let is_reserved = row.ranges().iter().any(|range| meet(range, &RESERVED));
+        assert!(!is_reserved || row.output == "paper-500001", "{}: seeds of `usar search`", row.output);
+    }
+    assert_eq!(met.len(), KNOWN_OVERLAPS.len(), "an overlap that is known is no more: {met:?}");
+    let help = &helps()["search"];
+    assert!(["400001", "500001"].iter().all(|seed| help.contains(&format!("[default: {seed}]"))), "{help}");
+}
+
+#[test]
+fn pages_whose_results_are_older_than_the_program_say_so() {
+    let rows = results::read(&root());
+    let bits = results::bits_of_pages(&rows);
+    let stale = bits.iter().filter(|(_, bits)| **bits < BITS).map(|(page, bits)| format!("{page}: {bits}"));
+    let stale: Vec<String> = stale.collect();
+    let mut wrong = Vec::new();
+    for (path, page) in pages() {
+        let place = path.strip_prefix(root()).unwrap().to_str().unwrap();
+        let headed = results::headed(&page, bits.get(place).copied());
+        if headed != page || headed.matches(&format!("\n{HEAD}")).count() > 1 {
+            wrong.push(place.to_owned());
+        }
+    }
+    assert!(
+        wrong.is_empty(),
+        "the head of {wrong:?} is missing, wrong or left over: `cargo run --bin xtask -- pages` renews it.\n\
+         Stale pages, by bits; the program has {BITS}:\n{}",
+        stale.join("\n")
+    );
+    for page in bits.keys() {
+        assert!(root().join(page).exists(), "docs/results.csv: {page}: no such page");
+    }
+    let old = format!("# A\n\n{HEAD}1; the program has {BITS}.\n\nText.\n");
+    assert_eq!(results::headed("# A\n\nText.\n", Some(1)), old);
+    assert_eq!(results::headed(&old, Some(1)), old);
+    assert_eq!(results::headed(&old, Some(BITS)), "# A\n\nText.\n");
+    assert_eq!(results::headed(&old, None), "# A\n\nText.\n");
+}
+
+#[test]
+fn the_ledger_has_every_result_of_a_page_and_commands_that_exist() {
+    let (rows, helps) = (results::read(&root()), helps());
+    let text = std::fs::read_to_string(root().join("docs/results.csv")).unwrap();
+    assert_eq!(results::text(&rows), text, "docs/results.csv is not as the program writes it");
+    let outputs: BTreeSet<&str> = rows.iter().map(|row| row.output.as_str()).collect();
+    assert_eq!(outputs.len(), rows.len(), "two rows of one output");
+    for row in &rows {
+        let unknown =
+            if row.command.starts_with("usar ") { unknown(&row.command, &helps) } else { Vec::new() };
+        assert!(unknown.is_empty(), "docs/results.csv: {}: {unknown:?} is not known", row.output);
+        for world in row.world.split(';') {
+            assert!(root().join(world).exists(), "docs/results.csv: {}: {world}: no such file", row.output);
+        }
+    }
+    for (path, page) in pages() {
+        let place = path.strip_prefix(root()).unwrap().to_str().unwrap();
+        for line in
+            page.lines().filter(|line| line.starts_with("<!-- $ usar ") || line.starts_with("<!-- copy "))
+        {
+            for folder in line.split(' ').filter_map(|word| word.strip_prefix("results/")) {
+                let is_of = |row: &&Row| format!("{folder}/").starts_with(&format!("{}/", row.output));
+                let row = rows.iter().find(is_of).unwrap_or_else(|| panic!("{place}: {folder}: no row"));
+                assert!(row.pages().any(|page| page == place), "docs/results.csv: {folder}: not of {place}");
+            }
+        }
+    }
 }

@@ -19,6 +19,7 @@ pub mod quiet;
 pub mod random;
 pub mod reference;
 pub mod reference_pages;
+pub mod results;
 pub mod rooms;
 pub mod team;
 pub mod weight;

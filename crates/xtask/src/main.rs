@@ -5,7 +5,9 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{coverage, golden, man, pages, quiet, reference, scale, scenarios, weight, work, worlds};
+use commands::{
+    coverage, golden, man, pages, quiet, reference, results, scale, scenarios, weight, work, worlds,
+};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -20,6 +22,7 @@ fn main() -> ExitCode {
         "pages" => pages::run(arguments),
         "quiet" => quiet::run(arguments),
         "reference" => reference::run(),
+        "results" => results::run(arguments),
         "scenarios" => scenarios::run(arguments),
         "scale" => scale::run(arguments),
         "weight" => weight::run(),
@@ -28,7 +31,7 @@ fn main() -> ExitCode {
         _ => {
             eprintln!(
                 "xtask: no task {task:?}. Tasks: coverage, golden, man, movement, \
-                 navigation, pages, quiet, reference, scale, scenarios, weight, work, worlds"
+                 navigation, pages, quiet, reference, results, scale, scenarios, weight, work, worlds"
             );
             ExitCode::from(2)
         }

@@ -6,6 +6,7 @@ pub mod man;
 pub mod pages;
 pub mod quiet;
 pub mod reference;
+pub mod results;
 pub mod scale;
 pub mod scenarios;
 pub mod weight;

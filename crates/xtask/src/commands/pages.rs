@@ -1,5 +1,6 @@
 //! Renews the numbers on the pages of `docs/` and of the studies: runs the command before each block and
-//! replaces the block by its output. Figures and long tables are copied beside the page.
+//! replaces the block by its output. Figures and long tables are copied beside the page. A page whose results
+//! are older than the program says so under its title.
 //!
 //! `pages [PAGE ...]`, in the project's folder, with `usar` built in the same profile. What is made of
 //! results that are not there stays as it is, and is named.
@@ -8,7 +9,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use xtask::pages;
+use xtask::{pages, results};
 
 pub fn run(arguments: &[String]) -> ExitCode {
     let usar = super::usar();
@@ -18,11 +19,16 @@ pub fn run(arguments: &[String]) -> ExitCode {
         let docs = folders.into_iter().flat_map(|folder| std::fs::read_dir(folder).expect("pages").flatten());
         let docs = docs.map(|entry| entry.path());
         chosen.extend(docs.filter(|path| path.extension().is_some_and(|kind| kind == "md")));
+        chosen.push("README.md".into());
         chosen.sort();
     }
+    let rows = results::read(Path::new("."));
+    let bits = results::bits_of_pages(&rows);
     for path in chosen {
         let page = std::fs::read_to_string(&path).expect("a page");
-        if !page.contains(pages::MARK) && !page.contains("<!-- copy ") {
+        let place = path.strip_prefix(".").unwrap_or(&path).to_str().expect("a name of text");
+        let headed = results::headed(&page, bits.get(place).copied());
+        if headed == page && !page.contains(pages::MARK) && !page.contains("<!-- copy ") {
             continue;
         }
         let mut answers = BTreeMap::new();
@@ -30,7 +36,7 @@ pub fn run(arguments: &[String]) -> ExitCode {
             let mut folders = command.split(' ').filter(|word| word.starts_with("results/"));
             folders.all(|folder| Path::new(folder).exists())
         };
-        let new = pages::renewed(&page, |command| {
+        let new = pages::renewed(&headed, |command| {
             if !is_there(command) {
                 eprintln!("{}: left as it is, without results: usar {command}", path.display());
                 return None;
