@@ -17,7 +17,7 @@ use crate::decisions::{Decisions, decisions};
 use crate::drawing::{self, Figure};
 use crate::figures::{Part, figures, is_quiet};
 use crate::maps::{Map, ShownTrial, trails_map, world_map};
-use crate::table::{between, moments};
+use crate::table::{between, moments, shown};
 use crate::wanted::Wanted;
 
 #[derive(Template)]
@@ -270,11 +270,11 @@ fn row(c: &Comparison) -> Row {
 
 /// The table of policies as rows of text.
 fn summary(folder: &Folder, case: usize) -> Vec<Vec<String>> {
-    let Experiment { policies, metrics, .. } = folder.experiment();
+    let policies = &folder.experiment().policies;
     let trials = folder.trials_of(case);
     let cell = |policy, metric| moments(&Trials::of(folder, case).moments(((case, policy), metric)), trials);
-    let primary = metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
-    primary
+    shown(folder, case)
+        .into_iter()
         .map(|(place, metric)| {
             std::iter::once(metric.name_with_unit())
                 .chain((0..policies.len()).map(|policy| cell(policy, place)))

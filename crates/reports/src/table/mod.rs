@@ -4,7 +4,8 @@ mod effects;
 mod grouping;
 
 use experiments::comparison::{Comparison, Trials, digits, short, short_p};
-use experiments::experiment::{Experiment, PolicySpec};
+use experiments::experiment::PolicySpec;
+use experiments::metric::Metric;
 use experiments::sweep::folder::Folder;
 use scenario::Words;
 use statistics::Moments;
@@ -19,26 +20,39 @@ pub use grouping::{levels_table, likeness_table};
 /// Largest number of policies that are columns of a table; more are rows.
 const MOST_COLUMNS: usize = 8;
 
+/// The metrics of a table of one case: the main ones, and the time beside them where trials are not equally
+/// long.
+pub(crate) fn shown(folder: &Folder, case: usize) -> Vec<(usize, &Metric)> {
+    let metrics = &folder.experiment().metrics;
+    let time = metrics.named("time").ok();
+    let of_case = folder.results().range((case, 0, 0)..(case + 1, 0, 0));
+    let mut times = of_case.filter_map(|(_, measured)| measured.metrics.as_ref()?.get(time?));
+    let first = times.next();
+    let differ = times.any(|time| Some(time) != first);
+    let is_shown = |(place, metric): &(usize, &Metric)| metric.is_primary || differ && Some(*place) == time;
+    metrics.iter().enumerate().filter(is_shown).collect()
+}
+
 /// Mean ± sample standard deviation of each metric and policy in one case. A row for each metric, or, if
 /// there are more than eight policies, for each policy.
 pub fn policy_table(folder: &Folder, case: usize) -> Table {
-    let Experiment { policies, metrics, .. } = folder.experiment();
+    let policies = &folder.experiment().policies;
     let trials = folder.trials_of(case);
     let cell = |policy, metric| {
         let found = Trials::of(folder, case).moments(((case, policy), metric));
         right(moments(&found, trials)).with(found.mean)
     };
-    let primary = || metrics.iter().enumerate().filter(|(_, metric)| metric.is_primary);
+    let shown = shown(folder, case);
     if policies.len() > MOST_COLUMNS {
-        let names = primary().map(|(_, metric)| right(&metric.name));
+        let names = shown.iter().map(|(_, metric)| right(&metric.name));
         let row = |(policy, spec): (usize, &PolicySpec)| {
-            labelled(&spec.label, primary().map(move |(metric, _)| cell(policy, metric)))
+            labelled(&spec.label, shown.iter().map(move |(metric, _)| cell(policy, *metric)))
         };
         return Table::of(labelled("policy", names), policies.iter().enumerate().map(row));
     }
     let mut table = Table::new(labelled("policy", policies.iter().map(|policy| right(&policy.label))));
     let mut last = "";
-    for (i, metric) in primary() {
+    for (i, metric) in shown {
         table.add(labelled(indented(&metric.name, last), (0..policies.len()).map(|policy| cell(policy, i))));
         last = &metric.name;
     }
