@@ -270,6 +270,8 @@ fn the_ledger_has_every_result_of_a_page_and_commands_that_exist() {
     assert_eq!(results::text(&rows), text, "docs/results.csv is not as the program writes it");
     let outputs: BTreeSet<&str> = rows.iter().map(|row| row.output.as_str()).collect();
     assert_eq!(outputs.len(), rows.len(), "two rows of one output");
+    let programs = [r#"{"bits": 12, "seed": 3}"#, r#"{"program": "bits 11, policies 0a"}"#, "{}"];
+    assert_eq!(programs.map(results::bits_in), [12, 11, 0]);
     for row in &rows {
         let unknown =
             if row.command.starts_with("usar ") { unknown(&row.command, &helps) } else { Vec::new() };

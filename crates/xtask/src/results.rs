@@ -90,10 +90,10 @@ impl Row {
     }
 }
 
-/// The number after `"bits": ` or in `"bits 12, policies ..."`.
-fn bits_in(text: &str) -> u32 {
+/// The number in `"bits": 12` or `"bits 12, policies ..."`, 0 where there is none.
+pub fn bits_in(text: &str) -> u32 {
     let rest = text.split("\"bits").nth(1).unwrap_or_default();
-    let digits = rest.trim_start_matches([' ', ':']);
+    let digits = rest.trim_start_matches(['"', ':', ' ']);
     digits.split(|c: char| !c.is_ascii_digit()).next().and_then(|digits| digits.parse().ok()).unwrap_or(0)
 }
 

@@ -116,7 +116,7 @@ fn submit(row: &Row) -> bool {
     if let Some(sweep) = row.command.strip_prefix("usar sweep ") {
         let script = format!("results/{}-shards/job.sh", row.output);
         if Path::new(&script).exists() {
-            println!("\n{script}: was written before; its third line submits it");
+            println!("\n{script}: was written before; it says how it is submitted");
             return true;
         }
         return shell(&format!("usar cluster submit {sweep} --shards {SHARDS}"));
