@@ -37,8 +37,9 @@ impl<'t> Trials<'t> {
     /// cost per rescuee they are linearised: the mean is the sum of the costs over the sum of the rescuees,
     /// so that trials without rescuees count, and a total lies between its tasks but for what robots spent
     /// outside groups.
-    pub fn values(&self, (cell, metric): Quantity) -> Vec<f64> {
-        if self.metrics[metric].is_censored && self.in_each((cell, metric)).contains(&None) {
+    pub fn values(&self, quantity: Quantity) -> Vec<f64> {
+        let (cell, metric) = quantity;
+        if self.metrics[metric].is_censored && self.in_each(quantity).contains(&None) {
             return Vec::new();
         }
         let of = |metric: usize| self.numbers.iter().map(move |trial| self.value((cell, metric), *trial));
@@ -79,7 +80,8 @@ impl<'t> Trials<'t> {
         if is_whole { found } else { vec![Pairs::default(); pairs.len()] } // a cell has no rescuees at all
     }
 
-    fn measured(&self, ((case, policy), _): Quantity, trial: u32) -> Option<&Measured> {
+    fn measured(&self, quantity: Quantity, trial: u32) -> Option<&Measured> {
+        let ((case, policy), _) = quantity;
         self.results.get(&(case, policy, trial))
     }
 

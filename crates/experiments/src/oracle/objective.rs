@@ -124,8 +124,8 @@ impl Objective {
     }
 
     /// The same objective over many decisions, with the `mean` of an objective over a fair draw at all of
-    /// them. For a cost per rescuee, an outcome then has its part in the ratio of sums, also without rescuees: its
-    /// linearised value, of which the mean over a fair draw is that ratio.
+    /// them. For a cost per rescuee, an outcome then has its part in the ratio of sums, also without
+    /// rescuees: its linearised value, of which the mean over a fair draw is that ratio.
     #[must_use]
     pub fn over(self, mean: impl Fn(&Self) -> Option<f64>) -> Self {
         let means = self.sums().and_then(|[cost, count]| Some([mean(&cost)?, mean(&count)?]));

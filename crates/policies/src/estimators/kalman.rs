@@ -6,10 +6,10 @@
 //! gate`, and changes nothing then; else `K = P- / S`, `x = x- + K (z - x-)`, `P = (1 - K) P-`. The
 //! `restart`-th report in a row that fails begins the level anew: `x = z`, `P = r`, as a track is begun by
 //! its first measurement; it counts as failed. So a robot that lost much at once, by something that its
-//! mates did not meet, is believed again. Trust is the mean of a Beta distribution of passes and failures of
-//! all levels: `(passes + 1) / (passes + failures + 2)`. The gate of 6.6349 is the 99 % point of a
-//! chi-square distribution with one degree of freedom (Bar-Shalom, Li, Kirubarajan 2001, *Estimation with
-//! Applications to Tracking and Navigation*, 5.4).
+//! mates did not meet, is believed again; so is a liar that goes on, at a lower trust. Trust is the mean of
+//! a Beta distribution of passes and failures of all levels: `(passes + 1) / (passes + failures + 2)`. The
+//! gate of 6.6349 is the 99 % point of a chi-square distribution with one degree of freedom (Bar-Shalom, Li,
+//! Kirubarajan 2001, *Estimation with Applications to Tracking and Navigation*, 5.4).
 
 use teaming::estimate::as_said;
 use teaming::{Estimate, Estimator, EstimatorKind, PolicyError, Question};

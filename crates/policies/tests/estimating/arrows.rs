@@ -39,7 +39,8 @@ fn a_liar_is_sent_where_it_belongs() {
             && !is_far("HP_DIS <- Truth", BRAGGER)
             && !is_far("HP_DIS <- Wmsr", BRAGGER)
     );
-    assert!(is_far("ENG", CHEAT) && !is_far("ENG <- Truth", CHEAT) && !is_far("ENG <- Kalman", CHEAT));
+    assert!(is_far("ENG", CHEAT) && !is_far("ENG <- Truth", CHEAT));
+    assert!(!is_far("ENG <- Kalman(restart: 0)", CHEAT) && is_far("ENG <- Kalman", CHEAT), "believed again");
     assert!(is_far("HP_DIS <- Beta", BRAGGER), "trust alone changes nothing");
     assert!(decide("RNE", &question()) != decide("RNE <- Truth", &question()));
 }

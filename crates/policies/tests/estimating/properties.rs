@@ -73,7 +73,8 @@ fn estimators_of_levels_see_what_is_theirs_to_see() {
     assert!(levels("Wmsr", BRAGGER)[1] < 55.0, "mates saw 24 %, itself said 100 %");
     near(levels("Truth", CHEAT)[0], 43.0);
     near(levels("LastReport", CHEAT)[0], 83.0);
-    roughly(levels("Kalman", CHEAT)[0], 43.0);
+    roughly(levels("Kalman(restart: 0)", CHEAT)[0], 43.0);
+    roughly(levels("Kalman", CHEAT)[0], 83.0);
     roughly(levels("Kalman", 0)[0], 48.0);
     near(levels("DeadReckoning", 0)[0], 80.0 - 42.0);
     assert!(trust("Kalman")[CHEAT as usize] < 0.8 && trust("Kalman")[0] > 0.9);

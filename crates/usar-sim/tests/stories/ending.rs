@@ -29,9 +29,11 @@ fn rounds(told: &[(f64, Event)]) -> usize {
 fn no_round_opens_when_everybody_is_home_and_the_trial_ends() {
     let (record, told) = told("", "");
     assert_eq!((&record.status, record.rescued(), record.people), (&Status::Finished, 8, 8));
-    assert_eq!((rounds(&told), record.completed_rounds), (1, 1));
-    assert!(record.time_s < 60.0 && matches!(told.last(), Some((_, Event::Finished))), "{}", record.time_s);
+    assert_eq!((rounds(&told), record.completed_rounds), (2, 2));
     let last = *record.delivered_s.last().unwrap();
+    let began = told.iter().rfind(|(_, event)| matches!(event, Event::RoundStarted { .. })).unwrap().0;
+    assert!(began < last, "the last round brought somebody home");
+    assert!(record.time_s < 150.0 && matches!(told.last(), Some((_, Event::Finished))), "{}", record.time_s);
     assert!(last <= record.time_s && record.time_to_share_s(1.0) == Some(last));
     assert!(record.time_to_share_s(0.5).unwrap() <= last);
     let (never, _) =
@@ -57,12 +59,12 @@ fn a_mission_waits_for_what_is_to_come() {
 
 #[test]
 fn who_is_off_to_rest_comes_home_before_the_end_and_its_costs_count() {
-    let rules =
-        "ends: WhenDone, round_end: WithoutResting, energy_threshold: 97, energy_turn_back: AfterRound";
-    let (record, told) = told(&format!("{rules}, rest_reserve: 0"), "");
-    assert_eq!(record.status, Status::Finished);
-    let ended = told.iter().filter(|(_, event)| matches!(event, Event::RoundEnded { .. })).last().unwrap().0;
-    let rested = told.iter().filter(|(_, event)| matches!(event, Event::RestEnded { .. }));
-    assert!(rested.clone().count() == 0 || rested.last().unwrap().0 <= record.time_s);
-    assert!(record.time_s >= ended);
+    let (record, told) = told("round_end: WithoutResting, energy_threshold: 90, rest_s: 60", "");
+    assert_eq!((&record.status, record.rescued()), (&Status::Finished, 8));
+    let last = |is_it: fn(&Event) -> bool| told.iter().rfind(|(_, event)| is_it(event)).unwrap().0;
+    let ended = last(|event| matches!(event, Event::RoundEnded { .. }));
+    let rested = last(|event| matches!(event, Event::RestEnded { .. }));
+    assert!(ended < rested && rested < record.time_s, "{ended} {rested} {}", record.time_s);
+    assert!(last(|event| matches!(event, Event::RoundStarted { .. })) < ended, "no other round began");
+    assert!(record.ungrouped_energy > 0.0, "the way home is of no group");
 }
