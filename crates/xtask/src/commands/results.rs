@@ -36,9 +36,9 @@ pub fn run(arguments: &[String]) -> ExitCode {
         |row: &&Row| if named.is_empty() { row.is_stale() } else { named.contains(&row.output.as_str()) };
     let chosen: Vec<&Row> = rows.iter().filter(is_chosen).collect();
     if is_list {
-        list(&rows.iter().collect::<Vec<_>>())
+        list(&rows.iter().collect::<Vec<_>>());
     } else {
-        list(&chosen)
+        list(&chosen);
     }
     tell_cost(&chosen);
     if is_list {
