@@ -20,7 +20,7 @@ teaming::options! {
         /// Number of liars to withstand: values that are dropped on each side.
         pub f: u32 = 1,
         /// Whether values are less what the robot says to have lost since.
-        pub aged: bool = true,
+        pub aged: bool = false,
     }
 }
 

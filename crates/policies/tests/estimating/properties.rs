@@ -77,7 +77,7 @@ fn estimators_of_levels_see_what_is_theirs_to_see() {
     roughly(levels("Kalman", CHEAT)[0], 83.0);
     roughly(levels("Kalman", 0)[0], 48.0);
     near(levels("DeadReckoning", 0)[0], 80.0 - 42.0);
-    assert!(trust("Kalman")[CHEAT as usize] < 0.8 && trust("Kalman")[0] > 0.9);
+    assert!(trust("Kalman(restart: 0)")[CHEAT as usize] < 0.8 && trust("Kalman")[0] > 0.9);
     for name in ["Truth", "DeadReckoning", "LastReport", "Smooth", "Wmsr"] {
         assert_eq!(trust(name), [1.0; 12], "{name}");
     }
