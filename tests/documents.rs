@@ -188,8 +188,9 @@ fn commands_on_the_pages_have_the_options_of_the_program() {
     assert_eq!(unknown("usar cluster submit x.ron --trails 3", &helps), ["--trails"]);
 }
 
-/// Verdicts from before the ledger on seeds that an earlier run had used: starts of the names of both.
-const KNOWN_OVERLAPS: [(&str, &str, &str); 8] = [
+/// Verdicts on seeds that an earlier run had used, from before the ledger or of one study: starts of both
+/// names.
+const KNOWN_OVERLAPS: [(&str, &str, &str); 9] = [
     ("when-a-robot-rests", "rne-loses", "another world"),
     ("paper-500001", "paper-search", "another world, whose search had reserved them"),
     ("rivals", "rne-wins", "another world"),
@@ -198,6 +199,7 @@ const KNOWN_OVERLAPS: [(&str, &str, &str); 8] = [
     ("trust-helped", "trust-fresh", "another policy, and its page says so"),
     ("trust-helped", "trust-helped", "two worlds of one study"),
     ("room-", "room-", "eighteen worlds of one study"),
+    ("estimator-options-fresh", "estimator-options-fresh", "five worlds of one study"),
 ];
 
 /// Seeds of `usar search` by default, with as many trials as it takes; no verdict of a study is on them.
