@@ -105,7 +105,7 @@ def test_a_robot_that_rests_stays_with_a_mask() -> None:
         assert list(seen) == env.possible_agents and len(set(rewards.values())) == 1
         masks.append(sum(not one["action_mask"].any() for one in seen.values()))
     assert max(masks[:-1]) > 0, "somebody was lost on the way"
-    assert all(truncated.values()) and not any(terminated.values())
+    assert all(terminated.values()) and not any(truncated.values()), "nobody is left to bring home"
 
 
 def test_nobody_who_can_carry_is_a_termination() -> None:
