@@ -53,6 +53,10 @@ scenarios *arguments:
 reference:
     cargo run --bin xtask -- reference
 
+# Every command of the pages, in one fresh folder, also those that take minutes
+commands:
+    cargo test --release --features usar/full --test suite -- --include-ignored tutorials::
+
 # The pages of docs/ as a book in target/book; index.html opens from disk, with search
 book:
     bash .ci/book

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use usar_sim::BITS;
 use xtask::results::{self, HEAD, Purpose, Row};
+use xtask::verdicts;
 
 use crate::support::{root, rust_files};
 
@@ -36,6 +37,14 @@ fn prose(page: &str) -> impl Iterator<Item = (usize, &str)> {
         is_code ^= is_fence;
         !is_code && !is_fence
     })
+}
+
+/// A line as a reader sees it.
+fn without_comments(line: &str) -> String {
+    let mut parts = line.split("<!-- ");
+    let first = parts.next().unwrap_or_default();
+    let rest = parts.map(|part| part.split_once(" -->").map_or(part, |(_, rest)| rest));
+    std::iter::once(first).chain(rest).collect()
 }
 
 /// The anchors of a page: its headings in lower case, with hyphens for blanks and without other signs.
@@ -118,7 +127,7 @@ fn prose_and_sources_fit_a_window_of_110_columns() {
         for (number, line) in prose(&page) {
             let is_prose = !line.starts_with(['|', '#', '!', '<']) && line.contains(' ');
             if is_prose {
-                look(&path, number, line);
+                look(&path, number, &without_comments(line));
             }
         }
     }
@@ -294,4 +303,56 @@ fn the_ledger_has_every_result_of_a_page_and_commands_that_exist() {
             }
         }
     }
+}
+
+/// Words by which a sentence says that one policy does better or worse than another.
+const COMPARATIVES: &str = "more less fewer better worse best worst most least above below help helps pay pays save \
+    saves cost costs lose loses suffer suffers gain gains equal hurt hurts beat beats down";
+
+/// The paragraphs, list items and headings of a page, without tables and blocks of code.
+fn paragraphs(page: &str) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    for (_, line) in prose(page).filter(|(_, line)| !line.starts_with('|')) {
+        if line.is_empty() || line.starts_with(['-', '#']) {
+            parts.push(String::new());
+        }
+        let last = parts.last_mut().unwrap();
+        last.push_str(line);
+        last.push(' ');
+    }
+    parts
+}
+
+/// The headings and bold sentences of a paragraph.
+fn loud(paragraph: &str) -> Vec<&str> {
+    let heading = paragraph.starts_with('#').then_some(paragraph);
+    heading.into_iter().chain(paragraph.split("**").skip(1).step_by(2)).collect()
+}
+
+#[test]
+fn headlines_that_compare_policies_are_verdicts_of_rows_that_exist() {
+    let registry = policies::standard();
+    let estimators = registry.estimators().iter().map(|kind| kind.name.as_str());
+    let names: BTreeSet<&str> = registry.names().into_iter().chain(estimators).collect();
+    let comparatives: BTreeSet<&str> = COMPARATIVES.split_whitespace().collect();
+    let compares = |text: &str| {
+        let words: Vec<&str> = text.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        words.iter().any(|word| names.contains(word)) && words.iter().any(|word| comparatives.contains(word))
+    };
+    assert!(compares("RNE loses the most.") && !compares("RNE is a policy") && !compares("more"));
+    let (mut bare, mut wrong, mut count) = (Vec::new(), Vec::new(), 0);
+    for (path, page) in pages().into_iter().filter(|(path, _)| !path.ends_with("CHANGELOG.md")) {
+        for paragraph in paragraphs(&page) {
+            let is_bare = !paragraph.contains(verdicts::MARK);
+            let loud = loud(&paragraph).into_iter().filter(|text| is_bare && compares(text));
+            bare.extend(loud.map(|text| format!("{}: {text}", path.display())));
+        }
+        let (filled, untrue) = verdicts::filled(&page, path.parent().unwrap());
+        count += page.matches(verdicts::MARK).count();
+        wrong.extend(untrue);
+        assert!(filled == page, "{}: a verdict is not as its row: `just pages` renews it", path.display());
+    }
+    assert!(bare.is_empty(), "a headline about policies needs a verdict:\n{}", bare.join("\n"));
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(count > 20, "{count} verdicts");
 }

@@ -22,5 +22,6 @@ pub mod reference_pages;
 pub mod results;
 pub mod rooms;
 pub mod team;
+pub mod verdicts;
 pub mod weight;
 pub mod worlds;

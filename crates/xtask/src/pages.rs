@@ -2,10 +2,12 @@
 //! output of that command. `<!-- $ usar ... | TITLE -->` selects a part of it: the table below the line
 //! that begins with this title, as Markdown, or the paragraph that begins with it, as a block. A number
 //! selects the first, second, ... table. A table that is too long for a page is a CSV beside it:
-//! `<!-- $ usar ... | TITLE > FILE -->`.
+//! `<!-- $ usar ... | TITLE > FILE -->`; the title `comparisons` takes all that `usar compare` compares.
 
 use std::path::Path;
 use std::process::Command;
+
+use crate::verdicts::comparisons;
 
 /// Start of the line before a block.
 pub const MARK: &str = "<!-- $ usar ";
@@ -32,7 +34,11 @@ impl<'p> Request<'p> {
 
     /// The arguments of the command that answers the request.
     fn arguments(self) -> String {
-        let markdown = if self.table.is_some() { " --format md" } else { "" };
+        let markdown = match self.table {
+            Some("comparisons") => " --wide --format md",
+            Some(_) => " --format md",
+            None => "",
+        };
         format!("{}{markdown}", self.command)
     }
 }
@@ -63,6 +69,7 @@ pub fn renewed(page: &str, mut run: impl FnMut(&str) -> Option<String>) -> Renew
         let Some(answer) = run(&request.arguments()) else { continue };
         let is_block = lines.peek() == Some(&"```text\n");
         match (request.table, request.file) {
+            (Some("comparisons"), Some(file)) => new.files.push((file.to_owned(), comparisons(&answer))),
             (Some(title), Some(file)) => new.files.push((file.to_owned(), csv(&table(&answer, title)))),
             (Some(title), None) if !is_block => {
                 while lines.next_if(|line| line.starts_with('|')).is_some() {}

@@ -43,7 +43,7 @@ pub struct Row {
     pub date: String,
     /// Number of its bits.
     pub bits: u32,
-    /// What it costs on two cores, if that is known.
+    /// How long it took on two cores when it was last run as a whole.
     pub minutes: Option<u32>,
 }
 
@@ -111,13 +111,15 @@ pub fn text(rows: &[Row]) -> String {
     String::from_utf8(writer.into_inner().expect("in memory")).expect("text")
 }
 
-/// Writes in the ledger that this row was run on this day by this program.
-pub fn mark(output: &str, date: &str) {
+/// Writes in the ledger that this row was run on this day by this program, and how long that took if it was
+/// run as a whole.
+pub fn mark(output: &str, date: &str, minutes: Option<u32>) {
     // It may have been edited while the command ran.
     let mut rows = read(Path::new("."));
     for row in rows.iter_mut().filter(|row| row.output == output) {
         row.bits = BITS;
         date.clone_into(&mut row.date);
+        row.minutes = minutes.or(row.minutes);
     }
     NewFile::write(Path::new("docs"), LEDGER, text(&rows).as_bytes())
         .expect("docs/results.csv can be written");

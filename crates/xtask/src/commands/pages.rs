@@ -3,13 +3,13 @@
 //! are older than the program says so under its title.
 //!
 //! `pages [PAGE ...]`, in the project's folder, with `usar` built in the same profile. What is made of
-//! results that are not there stays as it is, and is named.
+//! results that are not there stays as it is, and is named; so is a claim that its row does not show.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use xtask::{pages, results};
+use xtask::{pages, results, verdicts};
 
 pub fn run(arguments: &[String]) -> ExitCode {
     let usar = super::usar();
@@ -24,11 +24,13 @@ pub fn run(arguments: &[String]) -> ExitCode {
     }
     let rows = results::read(Path::new("."));
     let bits = results::bits_of_pages(&rows);
+    let mut is_true = true;
     for path in chosen {
         let page = std::fs::read_to_string(&path).expect("a page");
         let place = path.strip_prefix(".").unwrap_or(&path).to_str().expect("a name of text");
         let headed = results::headed(&page, bits.get(place).copied());
-        if headed == page && !page.contains(pages::MARK) && !page.contains("<!-- copy ") {
+        let has_marks = [pages::MARK, verdicts::MARK, "<!-- copy "].iter().any(|mark| page.contains(mark));
+        if headed == page && !has_marks {
             continue;
         }
         let mut answers = BTreeMap::new();
@@ -58,11 +60,14 @@ pub fn run(arguments: &[String]) -> ExitCode {
         for (name, text) in &new.files {
             put(&path, name, text.as_bytes());
         }
-        let is_same = new.page == page;
-        std::fs::write(&path, new.page).expect("the page can be written");
+        let (text, wrong) = verdicts::filled(&new.page, path.parent().unwrap_or(Path::new(".")));
+        wrong.iter().for_each(|claim| eprintln!("{}: {claim}", path.display()));
+        is_true &= wrong.is_empty();
+        let is_same = text == page;
+        std::fs::write(&path, text).expect("the page can be written");
         println!("{}: {}", path.display(), if is_same { "as it was" } else { "renewed" });
     }
-    ExitCode::SUCCESS
+    if is_true { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 /// Writes a file beside a page.

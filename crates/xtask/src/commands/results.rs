@@ -4,6 +4,7 @@
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
+use std::time::Instant;
 
 use programs::quoted;
 use usar_sim::BITS;
@@ -103,10 +104,12 @@ fn shell(command: &str) -> bool {
 
 /// Runs the command of a row, and writes in the ledger that it was run.
 fn play(row: &Row) -> bool {
+    let (is_new, begun) = (row.bits_there().is_none(), Instant::now());
     let is_done = shell(&row.command);
     if is_done {
         let date = Command::new("date").arg("+%F").output().expect("date runs").stdout;
-        results::mark(&row.output, String::from_utf8(date).expect("a date").trim());
+        let minutes = is_new.then(|| u32::try_from(begun.elapsed().as_secs().div_ceil(60)).expect("minutes"));
+        results::mark(&row.output, String::from_utf8(date).expect("a date").trim(), minutes);
     }
     is_done
 }
