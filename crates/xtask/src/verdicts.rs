@@ -2,8 +2,8 @@
 //!
 //! `<!-- verdict CLAIM FILE ROW -->+30.0 (22.9 to 37.3)` in prose: what is written up to the next `)` is the
 //! difference and its interval in the row of a CSV file whose cells, with ` | ` between them, begin with ROW.
-//! CLAIM is what the sentence says of it: `above`, `below`, `equivalent`, `same` or `undecided`. A page whose
-//! claim is not what the row shows is refused.
+//! In a table of cells, `ROW @ COLUMN` names one. CLAIM is what the sentence says of it: `above`, `below`,
+//! `equivalent`, `same` or `undecided`. A page whose claim is not what the row shows is refused.
 //!
 //! `<!-- differences NAME=FILE ... -->` stands before a table: a row for each comparison of the first file, a
 //! column for each file, and in bold what is shown to be above or below.
@@ -51,34 +51,26 @@ struct Shown {
     words: String,
 }
 
-/// Reads `22.9 to 37.3`.
-fn interval(text: &str) -> Option<(f64, f64)> {
-    let (low, high) = text.split_once(" to ")?;
-    Some((low.parse().ok()?, high.parse().ok()?))
-}
-
-/// What the cells of a row show. A row without the column `verdict` is judged by its interval.
-fn shown(header: &csv::StringRecord, row: &csv::StringRecord) -> Shown {
-    let cell = |name| header.iter().position(|cell| cell == name).and_then(|place| row.get(place));
-    let (difference, interval_text) = match (cell("difference"), cell("95 % interval")) {
-        (Some(difference), Some(interval)) => (difference, interval),
-        _ => row
-            .iter()
-            .find_map(|cell| cell.trim_end_matches([' ', '*']).strip_suffix(')')?.split_once(" ("))
-            .unwrap_or_else(|| panic!("no difference in {row:?}")),
+/// What the cells of a comparison show, or the cell of a column: `+34.6 (25.2 to 44.4) *`, the star where it
+/// is shown.
+fn shown(header: &csv::StringRecord, row: &csv::StringRecord, column: Option<&str>) -> Shown {
+    let cell = |name: &str| {
+        let place = header.iter().position(|cell| cell == name);
+        &row[place.unwrap_or_else(|| panic!("no column {name:?} in {header:?}"))]
+    };
+    let (difference, interval, verdict) = match column {
+        None => (cell("difference"), cell("95 % interval"), cell("verdict")),
+        Some(column) => {
+            let (value, star) = cell(column).split_once(')').expect("a value with its interval");
+            let (difference, interval) = value.split_once(" (").expect("a value with its interval");
+            (difference, interval, if star.contains('*') { "shown" } else { "undecided" })
+        }
     };
     let side = if difference.starts_with('-') { "below" } else { "above" };
-    let is_apart = interval(interval_text).is_some_and(|(low, high)| low > 0.0 || high < 0.0);
-    let claim = match cell("verdict") {
-        Some(verdict) if verdict.starts_with("equivalent") => "equivalent",
-        Some(verdict) if verdict.starts_with("undecided") => "undecided",
-        Some(verdict) if verdict.contains("same") => "same",
-        Some(_) => side,
-        None if is_apart => side,
-        None => "undecided",
-    };
+    let others = ["equivalent", "undecided", "same"];
+    let claim = others.into_iter().find(|word| verdict.contains(word)).unwrap_or(side);
     let sign = if difference.starts_with(['-', '+']) || difference == "0" { "" } else { "+" };
-    Shown { claim, words: format!("{sign}{difference} ({interval_text})") }
+    Shown { claim, words: format!("{sign}{difference} ({interval})") }
 }
 
 /// The header and the rows of a CSV file beside a page.
@@ -100,12 +92,13 @@ pub fn filled(page: &str, folder: &Path) -> (String, Vec<String>) {
             [claim, file, row] => (claim, file, row),
             _ => panic!("a verdict needs CLAIM FILE ROW, found {mark:?}"),
         };
+        let (row, column) = row.split_once(" @ ").map_or((row, None), |(row, column)| (row, Some(column)));
         let (header, rows) = table(folder, file);
         let begins =
             |cells: &&csv::StringRecord| cells.iter().collect::<Vec<_>>().join(" | ").starts_with(row);
         let found: Vec<&csv::StringRecord> = rows.iter().filter(begins).collect();
         assert!(found.len() == 1, "{file}: {} rows begin with {row:?}", found.len());
-        let shown = shown(&header, found[0]);
+        let shown = shown(&header, found[0], column);
         if claim != shown.claim {
             wrong.push(format!(
                 "{file}: {row}: the page says {claim}, the row {}: {}",
@@ -146,7 +139,7 @@ fn differences(files: &str, folder: &Path) -> String {
         let policy = row[0].rsplit_once(" - ").expect("A - B").0;
         write!(text, "| {} |", policy.replace('|', "\\|")).expect("in memory");
         for (header, rows) in &tables {
-            let one = rows.iter().find(|one| one[0] == row[0]).map(|one| shown(header, one));
+            let one = rows.iter().find(|one| one[0] == row[0]).map(|one| shown(header, one, None));
             let cell = one.map_or("-".to_owned(), |one| match one.claim {
                 "above" | "below" => format!("**{}**", one.words),
                 _ => one.words,
