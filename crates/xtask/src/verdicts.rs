@@ -89,10 +89,11 @@ pub fn filled(page: &str, folder: &Path) -> (String, Vec<String>) {
     while let Some((before, after)) = rest.split_once(MARK) {
         let (mark, after) = after.split_once(" -->").expect("a mark ends");
         let (claim, file, row) = match mark.splitn(3, ' ').collect::<Vec<_>>()[..] {
-            [claim, file, row] => (claim, file, row),
+            [claim, file, row] => (claim, file, row.replace("\\|", "|")), // as in a cell of a table
             _ => panic!("a verdict needs CLAIM FILE ROW, found {mark:?}"),
         };
-        let (row, column) = row.split_once(" @ ").map_or((row, None), |(row, column)| (row, Some(column)));
+        let (row, column) =
+            row.split_once(" @ ").map_or((row.as_str(), None), |(row, column)| (row, Some(column)));
         let (header, rows) = table(folder, file);
         let begins =
             |cells: &&csv::StringRecord| cells.iter().collect::<Vec<_>>().join(" | ").starts_with(row);
