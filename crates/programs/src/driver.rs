@@ -210,6 +210,7 @@ impl Driver for Handle {
             program: Arc::clone(&self.0),
             process,
             trial: None,
+            trials: 0,
             lost: None,
             questions: 0,
         }))
@@ -257,6 +258,8 @@ struct ProgramSession {
     process: Option<Process>,
     /// Seed and scenario of the trial.
     trial: Option<(u64, String)>,
+    /// How many trials have begun.
+    trials: u64,
     /// Why the process of this trial is no more.
     lost: Option<PolicyError>,
     questions: u64,
@@ -269,7 +272,7 @@ impl ProgramSession {
         };
         self.questions += 1;
         let id = self.questions;
-        let trial = self.trial.as_ref().map(|(seed, scenario)| Trial { seed: *seed, scenario });
+        let trial = self.trial.as_ref().map(|(_, scenario)| Trial { number: self.trials, scenario });
         let line = Message::Question { id, trial, question: asked.question }.line();
         if line.len() > MOST_BYTES {
             return Err(self.lose(ProgramError::from(Complaint::LongQuestion), asked.question));
@@ -336,6 +339,7 @@ impl Session for ProgramSession {
         }
         self.end_trial();
         self.trial = Some((start.seed, start.scenario.to_owned()));
+        self.trials += 1;
         if self.process.is_none() {
             self.lost = None;
             self.process = Some(self.program.process().map_err(|error| {

@@ -31,10 +31,11 @@ pub(crate) enum Message<'a> {
     Bye {},
 }
 
-/// The trial that asks.
+/// The trial that asks. Its seed is not told: by it, a program could play the trial and see what is true.
 #[derive(Serialize)]
 pub(crate) struct Trial<'a> {
-    pub(crate) seed: u64,
+    /// Which trial of this process it is, from 1.
+    pub(crate) number: u64,
     pub(crate) scenario: &'a str,
 }
 
