@@ -3,7 +3,8 @@
 //! `<!-- verdict CLAIM FILE ROW -->+30.0 (22.9 to 37.3)` in prose: what is written up to the next `)` is the
 //! difference and its interval in the row of a CSV file whose cells, with ` | ` between them, begin with ROW.
 //! In a table of cells, `ROW @ COLUMN` names one. CLAIM is what the sentence says of it: `above`, `below`,
-//! `equivalent`, `same` or `undecided`. A page whose claim is not what the row shows is refused.
+//! `equivalent`, `same` or `undecided`; of a cell with a verdict in words, these, as in `does-not-hold`. A page
+//! whose claim is not what the row shows is refused.
 //!
 //! `<!-- differences NAME=FILE ... -->` stands before a table: a row for each comparison of the first file, a
 //! column for each file, and in bold what is shown to be above or below.
@@ -25,7 +26,7 @@ const COLUMNS: [&str; 6] = ["difference", "95 % interval", "n", "p", "p Holm", "
 #[must_use]
 pub fn comparisons(answer: &str) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["A - B", "case"].iter().chain(&COLUMNS)).expect("a header");
+    writer.write_record(["A - B", "metric", "case"].iter().chain(&COLUMNS)).expect("a header");
     let (mut case, mut header) = ("", Vec::new());
     for line in answer.lines() {
         let cells: Vec<&str> = line.trim_matches('|').trim().split(" | ").map(str::trim).collect();
@@ -34,12 +35,16 @@ pub fn comparisons(answer: &str) -> String {
         } else if line.starts_with("| ---") {
         } else if line.starts_with('|') && !header.is_empty() {
             let column = |name: &&str| cells[header.iter().position(|cell| cell == name).expect("a column")];
-            let (pair, case) = (column(&"A - B").replace("\\|", "|"), case.to_owned());
+            let [pair, metric] = ["A - B", "metric"].map(|name| column(&name).replace("\\|", "|"));
             let rest = COLUMNS.iter().map(|name| column(name).to_owned());
-            writer.write_record([pair, case].into_iter().chain(rest)).expect("a row");
+            writer.write_record([pair, metric, case.to_owned()].into_iter().chain(rest)).expect("a row");
         } else {
             header.clear();
-            case = if line.is_empty() { case } else { line };
+            case = match line {
+                "" => case,
+                sentence if sentence.ends_with('.') => "",
+                title => title,
+            };
         }
     }
     String::from_utf8(writer.into_inner().expect("in memory")).expect("text")
@@ -47,7 +52,7 @@ pub fn comparisons(answer: &str) -> String {
 
 /// What a row shows: the claim that holds, and the difference with its interval.
 struct Shown {
-    claim: &'static str,
+    claim: String,
     words: String,
 }
 
@@ -60,6 +65,10 @@ fn shown(header: &csv::StringRecord, row: &csv::StringRecord, column: Option<&st
     };
     let (difference, interval, verdict) = match column {
         None => (cell("difference"), cell("95 % interval"), cell("verdict")),
+        Some(column) if !cell(column).contains(')') => {
+            let verdict = cell(column);
+            return Shown { claim: verdict.replace(' ', "-"), words: format!("({verdict})") };
+        }
         Some(column) => {
             let (value, star) = cell(column).split_once(')').expect("a value with its interval");
             let (difference, interval) = value.split_once(" (").expect("a value with its interval");
@@ -70,7 +79,7 @@ fn shown(header: &csv::StringRecord, row: &csv::StringRecord, column: Option<&st
     let others = ["equivalent", "undecided", "same"];
     let claim = others.into_iter().find(|word| verdict.contains(word)).unwrap_or(side);
     let sign = if difference.starts_with(['-', '+']) || difference == "0" { "" } else { "+" };
-    Shown { claim, words: format!("{sign}{difference} ({interval})") }
+    Shown { claim: claim.to_owned(), words: format!("{sign}{difference} ({interval})") }
 }
 
 /// The header and the rows of a CSV file beside a page.
@@ -141,7 +150,7 @@ fn differences(files: &str, folder: &Path) -> String {
         write!(text, "| {} |", policy.replace('|', "\\|")).expect("in memory");
         for (header, rows) in &tables {
             let one = rows.iter().find(|one| one[0] == row[0]).map(|one| shown(header, one, None));
-            let cell = one.map_or("-".to_owned(), |one| match one.claim {
+            let cell = one.map_or("-".to_owned(), |one| match one.claim.as_str() {
                 "above" | "below" => format!("**{}**", one.words),
                 _ => one.words,
             });
