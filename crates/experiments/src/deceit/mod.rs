@@ -6,8 +6,6 @@
 
 mod borne;
 mod cells;
-mod replay;
 
 pub use borne::{ACCURACY, Borne, Deceit, Judgement, Price};
 pub use cells::Difference;
-pub use replay::{Replay, Worth};

@@ -206,43 +206,6 @@ fn a_study_of_deceit_judges_as_a_comparison_does() {
     assert_eq!(found, 4, "some trial has few rescuees: {compared}");
 }
 
-/// Who knows the truth decides the same whoever lies; the mean of all assignments is worth 0 by itself.
-#[test]
-fn policies_are_judged_by_the_outcomes_of_all_assignments() {
-    let folder = tempfile::tempdir().unwrap();
-    let here = folder.path();
-    std::fs::write(here.join("two.ron"), TWO).unwrap();
-    std::fs::write(here.join("lied.ron"), LIED).unwrap();
-    let all = "(name: \"all\", scenario: \"two.ron\", policies: [\"DIS\"], trials: 4)";
-    std::fs::write(here.join("all.ron"), all).unwrap();
-    succeeds(&usar(here, "study regret all.ron --quiet"));
-    let command = "study deceit lied.ron --replay results/all --quiet";
-    let text = succeeds(&usar(here, command));
-    assert!(text.contains("rescuees per minute total (1/min): 4 trials that DIS decided"), "{text}");
-    let json = succeeds(&usar(here, &format!("{command} --json")[..]));
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let rows = json["tables"]["policies"].as_array().unwrap();
-    let row = |policy: &str| rows.iter().find(|row| row["policy"] == policy);
-    let mean =
-        |policy: &str, liars: usize| row(policy).unwrap()["differences"][liars]["mean"].as_f64().unwrap();
-    assert!((mean("sure", 0) - mean("sure", 1)).abs() < 1e-12, "{json}");
-    assert!((mean("HP_DIS", 0) - mean("sure", 0)).abs() < 1e-12, "nobody lies");
-    assert!((mean("HP_DIS", 1) - mean("sure", 1)).abs() > 1e-6, "{json}");
-    assert!((mean("DIS <- Beta", 0) - mean("DIS <- Truth", 1)).abs() < 1e-12, "DIS hears nothing");
-    let mut summary = csv::Reader::from_path(here.join("results/all/regret.csv")).unwrap();
-    let header = summary.headers().unwrap().clone();
-    let place = |name: &str| header.iter().position(|known| known == name).unwrap();
-    let [metric, trial, value, of_all] = ["metric", "trial", "value", "mean"].map(place);
-    let mut of_trials = std::collections::BTreeMap::<String, Vec<f64>>::new();
-    for row in summary.records().map(Result::unwrap).filter(|row| &row[metric] == "rescue_rate.total") {
-        let difference = row[value].parse::<f64>().unwrap() - row[of_all].parse::<f64>().unwrap();
-        of_trials.entry(row[trial].to_owned()).or_default().push(difference);
-    }
-    let means = of_trials.values().map(|all| all.iter().sum::<f64>() / all.len() as f64);
-    let expected = means.sum::<f64>() / of_trials.len() as f64;
-    assert!((mean("DIS <- Beta", 0) - expected).abs() < 1e-9, "as `usar study regret` has it: {expected}");
-}
-
 #[test]
 fn an_estimator_without_reports_is_told_of_in_a_single_trial() {
     let folder = tempfile::tempdir().unwrap();

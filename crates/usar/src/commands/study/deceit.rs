@@ -1,11 +1,9 @@
 //! `usar study deceit`: what lies cost each policy, how many liars it bears, and how well estimators judge.
 
 use experiments::comparison::{Standing, digits, short};
-use experiments::deceit::{ACCURACY, Borne, Deceit, Difference, Replay};
+use experiments::deceit::{ACCURACY, Borne, Deceit, Difference};
 use experiments::experiment::Experiment;
 use experiments::files::NewFile;
-use experiments::oracle::Objective;
-use experiments::regret::StudyFolder;
 use experiments::sweep::folder::Folder;
 use reports::deceit_figures;
 use reports::table::{mean, number, range};
@@ -28,20 +26,13 @@ with the second it is shown not to be. Both hold together at 95 %. Where a polic
 better among honest robots, there is nothing to break down. How well estimators judge is told by policies \
 `DIS <- ESTIMATOR`: DIS hears nothing, so that all estimators have the same evidence.
 
-With --replay, policies are asked at the decisions of trials that DIS decided, and each answer is worth what \
-came of it when the study of regret played all assignments to the end of the round. It is a filter: no \
-decision changes the rounds after it, and a policy that leaves robots idle has no value.
-
 The folder is that of a sweep, with all of its tables, and with two figures and their numbers: what each \
 policy has above a draw by number of liars (deceit-above-draw), and how many liars it bears \
 (deceit-breakdown). An interrupted study resumes.
 
 Examples:
   usar study deceit scenarios/sweeps/trust-tunnel.ron
-  usar study deceit scenarios/sweeps/trust-tunnel.ron --json > tunnel.json
-  usar study regret scenarios/sweeps/trust-regret.ron --scenario scenarios/trust/flood.ron
-  usar study deceit scenarios/sweeps/trust-filter.ron --scenario scenarios/trust/flood.ron \
-      --replay results/trust-regret-flood")]
+  usar study deceit scenarios/sweeps/trust-tunnel.ron --json > tunnel.json")]
 pub(crate) struct Arguments {
     /// Sweep file (RON), or the folder of a sweep
     #[arg(value_name = "FILE|DIR", value_parser = library::path)]
@@ -49,9 +40,6 @@ pub(crate) struct Arguments {
     /// File or folder to write [default: results/NAME]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Judge the policies by the outcomes of this folder of `usar study regret`, without trials of their own
-    #[arg(long, value_name = "DIR")]
-    replay: Option<PathBuf>,
     #[command(flatten)]
     selection: Selection,
     #[command(flatten)]
@@ -64,8 +52,7 @@ impl Arguments {
     pub(crate) fn execute(&self, registry: &Registry) -> Result<Report, Failure> {
         if self.file.is_dir() {
             let chosen = self.selection.arguments().into_iter().next();
-            let replay = self.replay.as_ref().map(|_| "--replay".to_owned());
-            if let Some(name) = chosen.or(replay).or(self.out.as_ref().map(|_| "--out".to_owned())) {
+            if let Some(name) = chosen.or(self.out.as_ref().map(|_| "--out".to_owned())) {
                 return Err(Failure::input(format!("{name}: is for a sweep file, and not for a folder")));
             }
             let folder = read_sweep(&self.file, registry)?;
@@ -74,9 +61,6 @@ impl Arguments {
         }
         let experiment = Experiment::load(&self.file, &self.selection.overrides(), registry)?;
         Deceit::check(&experiment).map_err(Failure::input_at(self.file.display()))?;
-        if let Some(folder) = &self.replay {
-            return self.replayed(folder, &experiment);
-        }
         let named = Path::new("results").join(&experiment.name);
         let place = self.out.clone().unwrap_or(named);
         Self::told(&self.progress.finished(&place, experiment)?)
@@ -102,26 +86,6 @@ impl Arguments {
             out.say("\nHow well estimators judge the same evidence");
             out.show("judgements", judgements(&found));
         }
-        Ok(out)
-    }
-
-    fn replayed(&self, folder: &Path, experiment: &Experiment) -> Result<Report, Failure> {
-        let study = StudyFolder::read(folder)?;
-        let objective = Objective::parse("rescue_rate", &study.study.tasks).map_err(Failure::run)?;
-        let found =
-            self.progress.work(study.folder.entries.len() * experiment.cases.len(), "trials", |bar| {
-                Replay::of(experiment, &study, &objective, &STOP, || bar.inc(1))
-            })??;
-        let words = "minus the mean of all assignments, by number of liars";
-        let first = format!("{}: {} trials that DIS decided; {words}", objective.title(), found.trials);
-        let rows = found
-            .worths
-            .iter()
-            .map(|one| of_lie(&one.policy, &one.lie, one.differences.iter().map(|it| number(it.mean))));
-        let header = of_lie("policy", "lie", &found.counts);
-        let mut out = Report::from(first);
-        out.rows("policies", &found.worths)?;
-        out.show("policies", Table::of(header, rows));
         Ok(out)
     }
 }
