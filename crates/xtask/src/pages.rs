@@ -44,7 +44,7 @@ impl<'p> Request<'p> {
 }
 
 fn parts<'t>(text: &'t str, sign: &str) -> (&'t str, Option<&'t str>) {
-    text.split_once(sign).map_or((text.trim(), None), |(left, right)| (left.trim(), Some(right.trim())))
+    text.rsplit_once(sign).map_or((text.trim(), None), |(left, right)| (left.trim(), Some(right.trim())))
 }
 
 /// A renewed page.
