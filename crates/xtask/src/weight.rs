@@ -130,7 +130,10 @@ impl Weight {
                 entry.0 += Lines::of_rust(place, &text(path));
             }
             "md" if !MADE_PAGES.iter().any(|page| place == format!("docs/{page}")) => {
-                let words = text(path).split_whitespace().count();
+                let page = text(path);
+                let seen =
+                    page.split("<!--").map(|part| part.split_once("-->").map_or(part, |(_, rest)| rest));
+                let words = seen.flat_map(str::split_whitespace).count();
                 *self.words.entry(folder.to_owned()).or_default() += words;
             }
             "ts" | "mjs" | "js" | "py" => self.add_script(folder, place, path),
