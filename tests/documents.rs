@@ -306,8 +306,8 @@ fn the_ledger_has_every_result_of_a_page_and_commands_that_exist() {
 }
 
 /// Words by which a sentence says that one policy does better or worse than another.
-const COMPARATIVES: &str = "more less fewer better worse best worst most least above below help helps pay pays save \
-    saves cost costs lose loses suffer suffers gain gains equal hurt hurts beat beats down";
+const COMPARATIVES: &str = "more less fewer better worse best worst most least above below help helps pay \
+    pays save saves cost costs lose loses suffer suffers gain gains equal hurt hurts beat beats down";
 
 /// The paragraphs, list items and headings of a page, without tables and blocks of code.
 fn paragraphs(page: &str) -> Vec<String> {

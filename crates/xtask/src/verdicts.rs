@@ -3,8 +3,8 @@
 //! `<!-- verdict CLAIM FILE ROW -->+30.0 (22.9 to 37.3)` in prose: what is written up to the next `)` is the
 //! difference and its interval in the row of a CSV file whose cells, with ` | ` between them, begin with ROW.
 //! In a table of cells, `ROW @ COLUMN` names one. CLAIM is what the sentence says of it: `above`, `below`,
-//! `equivalent`, `same` or `undecided`; of a cell with a verdict in words, these, as in `does-not-hold`. A page
-//! whose claim is not what the row shows is refused.
+//! `equivalent`, `same` or `undecided`; of a cell with a verdict in words, these, as in `does-not-hold`. A
+//! page whose claim is not what the row shows is refused.
 //!
 //! `<!-- differences NAME=FILE ... -->` stands before a table: a row for each comparison of the first file, a
 //! column for each file, and in bold what is shown to be above or below.

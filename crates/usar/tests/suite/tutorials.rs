@@ -1,5 +1,5 @@
-//! The pages for people: their files are written, their commands run in order, and in tutorials what they print is
-//! compared with the page.
+//! The pages for people: their files are written, their commands run in order, and in tutorials what they
+//! print is compared with the page.
 
 use std::path::Path;
 use std::process::Command;
