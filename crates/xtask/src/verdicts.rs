@@ -142,8 +142,8 @@ fn with_tables(page: &str, folder: &Path) -> String {
 fn differences(files: &str, folder: &Path) -> String {
     let files: Vec<(&str, &str)> =
         files.split(' ').map(|file| file.split_once('=').expect("NAME=FILE")).collect();
-    let names: String = files.iter().map(|(name, _)| format!(" {} |", name.replace('_', " "))).collect();
-    let mut text = format!("| policy |{names}\n| --- |{}\n", " ---: |".repeat(files.len()));
+    let names: Vec<String> = files.iter().map(|(name, _)| name.replace('_', " ")).collect();
+    let mut text = format!("| policy | {} |\n| --- |{}\n", names.join(" | "), " ---: |".repeat(files.len()));
     let tables: Vec<_> = files.iter().map(|(_, file)| table(folder, file)).collect();
     for row in &tables[0].1 {
         let policy = row[0].rsplit_once(" - ").expect("A - B").0;
