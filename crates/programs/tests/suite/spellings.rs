@@ -46,7 +46,7 @@ send({'type': 'error', 'id': asked['id'], 'message': 'enough'})";
     let expected = "[{\"type\": \"hello\", \"protocol\": 1, \"schema_versions\": [3], \
         \"usar\": \"0.1.0\", \"policy\": \"mine\", \
         \"options\": {\"depth\": 3, \"names\": [\"a\"], \"rule\": \"Sum\"}, \"process\": 0}, \
-        {\"type\": \"question\", \"id\": 1, \"trial\": {\"seed\": 7, \"scenario\": \"paper\"}, \
+        {\"type\": \"question\", \"id\": 1, \"trial\": {\"number\": 1, \"scenario\": \"paper\"}, \
         \"question\": 1}]";
     assert_eq!(told, expected);
 }
