@@ -4,7 +4,7 @@ A policy is a weight for each feature of a robot. The robots of a role are ranke
 the upper ones wish the harder tasks. The cross-entropy method finds weights: it draws 16 from a normal
 distribution, plays each on the same four trials, and moves the distribution to the best four.
 
-    python python/examples/learn.py tunnel --minutes 8
+    python python/examples/learn.py tunnel --generations 16
 """
 
 from __future__ import annotations
@@ -82,15 +82,15 @@ def play(many: usar.env.Vector, weights: Any, seeds: list[int]) -> Any:
     return rescued
 
 
-def learn(world: str, minutes: float, seed: int) -> tuple[Any, list[list[float]]]:
-    """Weights, and for each generation its seconds, the mean of all that were drawn, and of the elite."""
+def learn(world: str, generations: int, seed: int) -> tuple[Any, list[list[float]]]:
+    """Weights, and for each generation the mean of all that were drawn, and of the elite."""
     begun = time.monotonic()
     many = usar.env.vector(usar.Scenario.builtin(world), DRAWN * SEEDS)
     size = 2 + sum(name.startswith("robot_0_need_") for name in many.feature_names)
     draws = numpy.random.default_rng(seed)
     mean, spread = numpy.zeros(size), numpy.ones(size)
     curve: list[list[float]] = []
-    while (gone := time.monotonic() - begun) < 60 * minutes:
+    for _ in range(generations):
         weights = draws.normal(mean, spread, (DRAWN, size))
         first = FIRST_SEED + SEEDS * len(curve)
         played = play(many, weights.repeat(SEEDS, axis=0), list(range(first, first + SEEDS)) * DRAWN)
@@ -98,7 +98,8 @@ def learn(world: str, minutes: float, seed: int) -> tuple[Any, list[list[float]]
         best = numpy.argsort(-rescued, kind="stable")[:ELITE]
         mean = weights[best].mean(axis=0)
         spread = 0.7 * weights[best].std(axis=0) + 0.3 * spread
-        curve.append([gone, rescued.mean(), rescued[best].mean()])
+        curve.append([rescued.mean(), rescued[best].mean()])
+        gone = time.monotonic() - begun
         print(f"{gone:4.0f} s: {rescued.mean():.1f} rescued, the best four {rescued[best].mean():.1f}", flush=True)
     return mean, curve
 
@@ -107,15 +108,15 @@ def main() -> None:
     """Learn, write the curve and the weights, and compare."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("world", help="name of a scenario")
-    parser.add_argument("--minutes", type=float, default=8.0, help="time to learn")
+    parser.add_argument("--generations", type=int, default=16, help="generations of 64 trials to learn from")
     parser.add_argument("--seed", type=int, default=1, help="seed of the learner")
     parser.add_argument("--trials", type=int, default=200, help="trials of the test")
     parser.add_argument("--out", type=Path, default=Path("results/learned"), help="folder to write")
     options = parser.parse_args()
-    weights, curve = learn(options.world, options.minutes, options.seed)
+    weights, curve = learn(options.world, options.generations, options.seed)
     options.out.mkdir(parents=True, exist_ok=True)
     with (options.out / "curve.csv").open("w", newline="") as file:
-        csv.writer(file, lineterminator="\n").writerows([["seconds", "drawn", "elite"], *curve])
+        csv.writer(file, lineterminator="\n").writerows([["drawn", "elite"], *curve])
     (options.out / "weights.json").write_text(json.dumps(list(weights)) + "\n")
     against = ["RANDOM", "ENG", "HP_DIS", "DIS", "RNE"]
     results = usar.sweep(options.world, [Learned(weights), *against], options.trials, out=options.out / "test")
