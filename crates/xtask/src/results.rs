@@ -43,8 +43,9 @@ pub struct Row {
     pub date: String,
     /// Number of its bits.
     pub bits: u32,
-    /// How long it took on two cores when it was last run as a whole.
-    pub minutes: Option<u32>,
+    /// Half of the processor's minutes that it took when it was last run as a whole: minutes of two cores that
+    /// do nothing else.
+    pub minutes: Option<f64>,
 }
 
 /// What a result is for.
@@ -111,9 +112,9 @@ pub fn text(rows: &[Row]) -> String {
     String::from_utf8(writer.into_inner().expect("in memory")).expect("text")
 }
 
-/// Writes in the ledger that this row was run on this day by this program, and how long that took if it was
-/// run as a whole.
-pub fn mark(output: &str, date: &str, minutes: Option<u32>) {
+/// Writes in the ledger that this row was run on this day by this program, and its
+/// minutes if it was run as a whole.
+pub fn mark(output: &str, date: &str, minutes: Option<f64>) {
     // It may have been edited while the command ran.
     let mut rows = read(Path::new("."));
     for row in rows.iter_mut().filter(|row| row.output == output) {

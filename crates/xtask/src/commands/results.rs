@@ -4,7 +4,6 @@
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
-use std::time::Instant;
 
 use programs::quoted;
 use usar_sim::BITS;
@@ -74,10 +73,10 @@ fn list(rows: &[&Row]) {
 
 fn tell_cost(chosen: &[&Row]) {
     let kept: Vec<&&Row> = chosen.iter().filter(|row| !row.command.is_empty()).collect();
-    let minutes: u32 = kept.iter().filter_map(|row| row.minutes).sum();
+    let minutes: f64 = kept.iter().filter_map(|row| row.minutes).sum();
     let unknown = kept.iter().filter(|row| row.minutes.is_none()).count();
     println!(
-        "{} to be run: {minutes} minutes of two cores, and {unknown} whose cost is not known; {} not kept",
+        "{} to be run: {minutes:.0} minutes of two cores, and {unknown} whose cost is not known; {} not kept",
         kept.len(),
         chosen.len() - kept.len()
     );
@@ -104,14 +103,24 @@ fn shell(command: &str) -> bool {
 
 /// Runs the command of a row, and writes in the ledger that it was run.
 fn play(row: &Row) -> bool {
-    let (is_new, begun) = (row.bits_there().is_none(), Instant::now());
+    let (is_new, before) = (row.bits_there().is_none(), minutes_of_children());
     let is_done = shell(&row.command);
     if is_done {
         let date = Command::new("date").arg("+%F").output().expect("date runs").stdout;
-        let minutes = is_new.then(|| u32::try_from(begun.elapsed().as_secs().div_ceil(60)).expect("minutes"));
+        let minutes = minutes_of_children().zip(before).map(|(after, before)| (after - before).max(0.1));
+        let minutes = minutes.filter(|_| is_new).map(|minutes| (10.0 * minutes).round() / 10.0);
         results::mark(&row.output, String::from_utf8(date).expect("a date").trim(), minutes);
     }
     is_done
+}
+
+/// Half of the processor's minutes of all commands so far; none on a system that does not tell it.
+fn minutes_of_children() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    // `cutime` and `cstime`, in hundredths of a second.
+    let ticks: Option<Vec<f64>> = [13, 14].iter().map(|&i| fields.get(i)?.parse().ok()).collect();
+    Some(ticks?.iter().sum::<f64>() / 100.0 / 60.0 / 2.0)
 }
 
 /// Writes the job script of a row, and prints the line that submits it.
