@@ -82,7 +82,7 @@ fn each_of_25_faults_is_caught_within_one_step() {
         let robot = loop {
             assert_eq!(trial.step(&mut *policy), None);
             check.listen(trial.time_s(), trial.events(), trial.world()).unwrap();
-            let carries = |robot: &&usar_sim::robot::Robot| {
+            let carries = |robot: &&usar_sim::world::Robot| {
                 !robot.load.is_empty() && robot.velocity.length() > 1.0 && robot.hp < 99.0
             };
             if let Some(robot) = trial.world().robots.iter().find(carries) {

@@ -8,12 +8,11 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use scenario::shapes::{Outline, RadiationZone};
 use scenario::{DebrisFile, DebrisShape, Scenario};
-use usar_sim::belief::Belief;
+use usar_sim::belief::{Belief, KnownRobot};
 use usar_sim::executor::Executor;
 use usar_sim::model::{Layout, Model};
 use usar_sim::navigation::{Goal, Navigator, Outlook};
 use usar_sim::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap, Planner, Query};
-use usar_sim::robot::Robot;
 use usar_sim::world::World;
 
 use crate::support::{lies, paper, paper_with, trial};
@@ -366,9 +365,9 @@ fn a_way_that_a_pushed_piece_leaves_free_is_taken_once_it_is_noticed_and_others_
         let robot = world.robots[0].id;
         navigator.set_goal(robot, Some(Goal { point: Vector::new(20.0, 5.0), within: 0.15 }));
         let mut length = |known: &Belief| {
-            let (team, step) = (&world.robots[..], 1);
+            let (team, step) = (&[KnownRobot::new(&model.robots[0])], 1);
             let outlook =
-                Outlook { model: &model, team, step, belief_of: |_| known, speed_of: |_: &Robot| 2.0 };
+                Outlook { model: &model, team, step, belief_of: |_| known, speed_of: |_: &KnownRobot| 2.0 };
             navigator.plan(&outlook, Executor::Serial);
             navigator.traveller(robot).route().unwrap().length(world.robots[0].position)
         };

@@ -12,8 +12,8 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 use teaming::{Assignment, Deadline, Decision, Session};
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::robot::Robot;
 use usar_sim::simulation::{Advance, Simulation as Trial};
+use usar_sim::world::Robot;
 
 use crate::answer::asked;
 use crate::arrays::{array, points, vectors};

@@ -7,9 +7,10 @@ use teaming::TaskId;
 use usar_sim::belief::Belief;
 use usar_sim::conflict::DelayCause;
 use usar_sim::mission::Activity;
-use usar_sim::robot::{Condition, Robot};
+use usar_sim::robot::Condition;
 use usar_sim::simulation::Simulation;
 use usar_sim::world::RescueeState;
+use usar_sim::world::Robot;
 
 use crate::numbers::NotNumbers;
 

@@ -8,9 +8,10 @@ use crate::hash::HashChain;
 use crate::invariant::Overlaps;
 use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
 use crate::model::{Liar, Model, TelemetryModel};
-use crate::robot::{Condition, Robot};
+use crate::robot::Condition;
 use crate::tally::Tally;
 use crate::telemetry::{Ends, Heard, Link, Telemetry, known, named};
+use crate::world::Robot;
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

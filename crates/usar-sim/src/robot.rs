@@ -1,5 +1,5 @@
-//! Robots: their motion, and the levels that decide what they can do. The world holds them as they are, a
-//! belief as they were heard to be.
+//! The state of a robot: its motion, and the levels that decide what it can do. A robot of the world has one,
+//! a belief the one that the robot reported.
 
 use std::ops::Deref;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ pub enum Condition {
 
 /// The state of a robot. A robot dereferences to its fixed properties, the [`RobotModel`].
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-pub struct Robot {
+pub struct RobotState {
     #[serde(skip)]
     pub(crate) model: Arc<RobotModel>,
     /// Centre, in metres.
@@ -52,13 +52,13 @@ pub struct Robot {
     pub wreck_at: Option<Vector>,
 }
 
-impl Clone for Robot {
+impl Clone for RobotState {
     fn clone(&self) -> Self {
         Self { model: Arc::clone(&self.model), load: SmallVec::from_slice(&self.load), ..*self }
     }
 }
 
-impl Deref for Robot {
+impl Deref for RobotState {
     type Target = RobotModel;
 
     fn deref(&self) -> &RobotModel {
@@ -66,7 +66,7 @@ impl Deref for Robot {
     }
 }
 
-impl Robot {
+impl RobotState {
     /// A robot at home, without motion, with its initial levels.
     pub(crate) fn new(model: &Arc<RobotModel>) -> Self {
         let [energy, hp] = model.initial_levels;

@@ -6,7 +6,8 @@ use crate::conflict::{Delay, DelayCause, Directive};
 use crate::ids::RobotId;
 use crate::mission::Activity;
 use crate::navigation::Traveller;
-use crate::robot::{Condition, Robot};
+use crate::robot::Condition;
+use crate::world::Robot;
 
 /// The totals of one robot.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]

@@ -6,9 +6,9 @@ use scenario::CostUnit;
 use serde::{Deserialize, Serialize};
 use teaming::{GroupOutcome, MemberOutcome, RoundOutcome, TaskId};
 
+use super::robot::KnownRobot;
 use crate::hash::part;
 use crate::ids::RobotId;
-use crate::robot::Robot;
 
 /// What the base knows of the rounds.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -95,7 +95,7 @@ impl Ledger {
     /// The round is over. `turned_back` tells which robots went to rest in it.
     pub(crate) fn end(
         &mut self,
-        team: &[Robot],
+        team: &[KnownRobot],
         unit: CostUnit,
         time_s: f64,
         turned_back: impl Fn(RobotId) -> bool,

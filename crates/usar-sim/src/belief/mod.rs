@@ -6,6 +6,7 @@ mod fold;
 mod known;
 mod ledger;
 mod news;
+mod robot;
 mod shared;
 mod table;
 #[cfg(test)]
@@ -15,5 +16,6 @@ pub use fold::Belief;
 pub use known::{KnownDebris, KnownRescuee, KnownTask, KnownWreck, KnownZone};
 pub use ledger::Ledger;
 pub(crate) use news::{News, Seen};
+pub use robot::KnownRobot;
 pub use shared::{Beliefs, Holder};
 pub use table::Table;

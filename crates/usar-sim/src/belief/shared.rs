@@ -2,16 +2,20 @@
 //! robot in the field has its own and may hear from its mates. Robots without a group share the belief of the
 //! team at home. What a robot says of itself, the whole team knows.
 
+use std::sync::Arc;
+
 use scenario::BeliefSharing;
 use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
 use super::fold::Belief;
 use super::ledger::Ledger;
+use super::robot::KnownRobot;
 use crate::ids::RobotId;
+use crate::model::RobotModel;
 use crate::planning::Inflation;
 use crate::report::{Report, Speaker};
-use crate::robot::Robot;
+use crate::robot::RobotState;
 
 /// The place of a belief in the field: of a group, or of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -52,20 +56,18 @@ impl Holder {
 pub struct Beliefs {
     field: Vec<Belief>,
     home: Belief,
-    /// The robots as they last said they are, by id.
-    pub team: Vec<Robot>,
-    /// The step as of which each robot said so.
-    said_at: Vec<u64>,
+    /// The robots as they are known, by id.
+    pub team: Vec<KnownRobot>,
     /// What the base knows of the rounds.
     pub ledger: Ledger,
 }
 
 impl Beliefs {
-    /// Beliefs about nothing but the team.
-    pub fn nothing(holders: usize, inflation: &Inflation, team: Vec<Robot>) -> Self {
+    /// Beliefs about nothing but a team that is at home.
+    pub fn nothing(holders: usize, inflation: &Inflation, team: &[Arc<RobotModel>]) -> Self {
         let home = Belief::nothing(inflation);
-        let (said_at, ledger) = (vec![0; team.len()], Ledger::empty(team.len()));
-        Self { field: vec![home.clone(); holders], home, team, said_at, ledger }
+        let (ledger, team) = (Ledger::empty(team.len()), team.iter().map(KnownRobot::new).collect());
+        Self { field: vec![home.clone(); holders], home, team, ledger }
     }
 
     /// A belief in the field, or that of the team at home. The latter is what all had heard when the last
@@ -74,16 +76,11 @@ impl Beliefs {
         holder.map_or(&self.home, |holder| &self.field[holder.0 as usize])
     }
 
-    /// The whole team hears at once what robots say of themselves: their places, motions, levels, resources
-    /// and loads, where they are not as they were said to be.
-    pub(crate) fn hear_of_selves(&mut self, robots: &[Robot], at_step: u64) {
-        for ((robot, known), said_at) in robots.iter().zip(&mut self.team).zip(&mut self.said_at) {
-            if !robot.is_as(known) {
-                *said_at = at_step;
-                self.ledger.note_levels(robot.id, [known.energy, known.hp], [robot.energy, robot.hp]);
-                known.be_as(robot);
-            }
-        }
+    /// The whole team hears at once what a robot reports of itself.
+    pub(crate) fn hear_of_self(&mut self, state: &RobotState, at_step: u64) {
+        let known = &mut self.team[state.id.index()];
+        self.ledger.note_levels(state.id, [known.energy, known.hp], [state.energy, state.hp]);
+        known.hear(state, at_step);
     }
 
     /// Lets a report be heard by all who share the sender's belief, or by the whole team if the base speaks.
@@ -111,9 +108,9 @@ impl Beliefs {
 
     /// The beliefs as they count in the hash chain.
     pub(crate) fn to_hash(&self) -> impl Serialize + '_ {
-        let Self { field, home, team, said_at, ledger } = self;
+        let Self { field, home, team, ledger } = self;
         let field: Vec<u128> = field.iter().map(Belief::digest).collect();
-        (field, home.digest(), team, said_at, ledger.to_hash())
+        (field, home.digest(), KnownRobot::to_hash(team), ledger.to_hash())
     }
 
     /// The team at home hears all that was heard in the field.

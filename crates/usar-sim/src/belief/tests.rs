@@ -71,7 +71,7 @@ fn a_rescuee_waits_until_a_later_report_says_that_it_is_gone() {
 #[test]
 fn pooled_beliefs_hold_the_newest_of_each_and_survive_a_snapshot() {
     let inflation = Inflation { radii: vec![0.4, 0.8], clearance: 0.15 };
-    let mut beliefs = Beliefs::nothing(2, &inflation, Vec::new());
+    let mut beliefs = Beliefs::nothing(2, &inflation, &[]);
     let sharing = BeliefSharing::WithGroup;
     let group = |robot: RobotId| (robot.0 < 2).then(|| Holder::of(sharing, robot, TaskId(robot.0 as u16)));
     let by = |robot: u32, report: Report| Report { from: Speaker::Robot(RobotId(robot)), ..report };

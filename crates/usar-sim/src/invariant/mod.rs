@@ -14,7 +14,7 @@ use parry2d::math::Vector;
 use crate::event::Event;
 use crate::ids::RobotId;
 use crate::model::Model;
-use crate::robot::Robot;
+use crate::world::Robot;
 use crate::world::{RescueeState, World};
 use overlaps::Gauge;
 pub use overlaps::{Overlaps, RARE_OVERLAP_M};

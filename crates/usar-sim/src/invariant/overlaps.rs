@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ids::RobotId;
 use crate::model::Model;
-use crate::robot::Robot;
+use crate::world::Robot;
 use crate::world::{Debris, World};
 
 /// Overlap that one contact in a thousand may exceed, in metres.

@@ -8,12 +8,13 @@ use super::agent::{Activity, Agent};
 use super::round::{Fitness, unfit_cause};
 use super::scene::Scene;
 use super::{SLOT_M, SWEEP_M};
+use crate::belief::KnownRobot;
 use crate::belief::{Beliefs, Holder};
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::{MissionModel, Model};
 use crate::navigation::Goal;
-use crate::robot::Robot;
+use crate::robot::RobotState;
 use crate::telemetry::Presence;
 
 /// The group of one task in the current round.
@@ -70,7 +71,7 @@ impl Crew {
 
     /// Top speed of a robot, in metres per second. It falls with its health and with its load, and in a group
     /// without a guide that can act.
-    pub fn speed_of(&self, model: &Model, robot: &Robot) -> f64 {
+    pub fn speed_of(&self, model: &Model, robot: &RobotState) -> f64 {
         let rules = &model.mission;
         let task = self.agents[robot.id.index()].task;
         let is_blind = task.is_some_and(|task| !self.is_guided[task.index()]);
@@ -79,7 +80,7 @@ impl Crew {
     }
 
     /// Where a robot is in the mission, for telemetry.
-    pub(crate) fn presence(&self, model: &Model, robot: &Robot) -> Presence {
+    pub(crate) fn presence(&self, model: &Model, robot: &KnownRobot) -> Presence {
         let activity = &self.agents[robot.id.index()].activity;
         Presence {
             is_home: *activity == Activity::Home,
@@ -90,7 +91,7 @@ impl Crew {
     }
 
     /// Notes which groups have a guide that can act.
-    pub(crate) fn look_for_guides(&mut self, rules: &MissionModel, team: &[Robot]) {
+    pub(crate) fn look_for_guides(&mut self, rules: &MissionModel, team: &[KnownRobot]) {
         let guides = |id: &RobotId| {
             let robot = &team[id.index()];
             let is_there = rules.resting_guides || !self.agents[id.index()].activity.is_rest();
@@ -104,7 +105,7 @@ impl Crew {
     pub(super) fn in_field<'m>(
         &'m self,
         task: TaskId,
-        team: &'m [Robot],
+        team: &'m [KnownRobot],
     ) -> impl Iterator<Item = RobotId> + 'm {
         let is_in_field =
             |id: &RobotId| team[id.index()].is_able() && self.agents[id.index()].activity.is_in_field();
@@ -120,7 +121,7 @@ impl Crew {
 
     /// Resources of a group in the field that no claim needs; negative if there are more claims than
     /// resources.
-    pub(super) fn spare_resources(&self, task: TaskId, team: &[Robot]) -> i64 {
+    pub(super) fn spare_resources(&self, task: TaskId, team: &[KnownRobot]) -> i64 {
         let resources = |id: RobotId| i64::from(team[id.index()].resources);
         let claims = |id: RobotId| i64::from(self.agents[id.index()].activity.claim().is_some());
         self.in_field(task, team).map(|id| resources(id) - claims(id)).sum()
@@ -139,9 +140,9 @@ impl Crew {
 
     /// Whether every robot for which the team waits is at home.
     pub(super) fn everybody_is_home(&self, scene: &Scene) -> bool {
-        let agent = |robot: &Robot| &self.agents[robot.id.index()];
+        let agent = |robot: &KnownRobot| &self.agents[robot.id.index()];
         let waits_for_resting = scene.model.mission.round_end == RoundEnd::EverybodyHome;
-        let waited_for = |robot: &&Robot| {
+        let waited_for = |robot: &&KnownRobot| {
             let agent = agent(robot);
             robot.is_able() && !agent.is_cut_off && (waits_for_resting || !agent.is_off_to_rest())
         };
@@ -165,7 +166,7 @@ impl Crew {
     }
 
     /// Why a robot must rest before it can take part in a round; `None` if it is fit.
-    pub(super) fn unfit_cause(&self, rules: &MissionModel, robot: &Robot) -> Option<TurnBackCause> {
+    pub(super) fn unfit_cause(&self, rules: &MissionModel, robot: &RobotState) -> Option<TurnBackCause> {
         let Agent { costliest_round, has_rested, .. } = self.agents[robot.id.index()];
         let fitness = Fitness { energy: robot.energy, hp: robot.hp, costliest_round, has_rested };
         unfit_cause(rules, &fitness)
@@ -208,7 +209,13 @@ impl Crew {
     }
 
     /// Sends a group to its task. A group in which no robot can carry stays at home.
-    pub(super) fn send_out(&mut self, task: TaskId, members: Vec<RobotId>, model: &Model, team: &[Robot]) {
+    pub(super) fn send_out(
+        &mut self,
+        task: TaskId,
+        members: Vec<RobotId>,
+        model: &Model,
+        team: &[KnownRobot],
+    ) {
         let at_work = members.iter().any(|id| team[id.index()].can_carry());
         let area = &model.tasks[task.index()].area;
         let (mut ground, mut aerial) = (0, 0);
@@ -231,7 +238,7 @@ impl Crew {
     }
 
     /// The goal of a robot, by its activity; none while it loads or if it can no longer act.
-    pub(super) fn goal_of(&self, robot: &Robot, model: &Model, beliefs: &Beliefs) -> Option<Goal> {
+    pub(super) fn goal_of(&self, robot: &KnownRobot, model: &Model, beliefs: &Beliefs) -> Option<Goal> {
         let agent = &self.agents[robot.id.index()];
         if !robot.is_able() {
             return None;

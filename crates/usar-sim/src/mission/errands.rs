@@ -1,10 +1,10 @@
 //! Errands: robots go from place to place. In a scenario with errands, they replace the mission.
 
 use super::{Activity, Crew, Progress, Scene};
+use crate::belief::KnownRobot;
 use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
 use crate::model::Model;
-use crate::robot::Robot;
 
 impl Crew {
     /// Hands out the errands.
@@ -28,7 +28,7 @@ impl Crew {
         !scene.beliefs.team.iter().any(|robot| self.is_on_errand(robot))
     }
 
-    fn is_on_errand(&self, robot: &Robot) -> bool {
+    fn is_on_errand(&self, robot: &KnownRobot) -> bool {
         robot.is_able() && self.agents[robot.id.index()].activity == Activity::OnErrand
     }
 

@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
 use super::{Activity, Crew, Scene};
+use crate::belief::KnownRobot;
 use crate::conflict::Directive;
 use crate::event::{CutOffCause, Event};
 use crate::ids::RobotId;
 use crate::model::{LATE_SHARE, Model};
-use crate::robot::Robot;
+use crate::robot::RobotState;
 
 /// Least decrease of the remaining route that counts as coming nearer, in metres. A smaller one may be a push
 /// by another robot.
@@ -110,7 +111,7 @@ impl Crew {
     /// which that robot waits, and so on.
     fn late_while_others_get_on(&self, id: RobotId, scene: &Scene) -> Option<u64> {
         let (team, model) = (&scene.beliefs.team, scene.model);
-        let is_late = |robot: &Robot| self.is_held_up_for(LATE_SHARE, robot, model);
+        let is_late = |robot: &KnownRobot| self.is_held_up_for(LATE_SHARE, robot, model);
         if !is_late(&team[id.index()]) {
             return None;
         }
@@ -130,19 +131,19 @@ impl Crew {
 
     /// Whether a robot has come no nearer to its goal for `mission.cut_off_s` plus the time that its longest
     /// detour takes.
-    pub(super) fn is_held_up(&self, robot: &Robot, model: &Model) -> bool {
+    pub(super) fn is_held_up(&self, robot: &RobotState, model: &Model) -> bool {
         self.is_held_up_for(1.0, robot, model)
     }
 
     /// The same for so many times `mission.cut_off_s`.
-    fn is_held_up_for(&self, times: f64, robot: &Robot, model: &Model) -> bool {
+    fn is_held_up_for(&self, times: f64, robot: &RobotState, model: &Model) -> bool {
         let steps = self.agents[robot.id.index()].progress.held_up_steps;
         steps > model.mission.late_steps && steps > self.patience(times, robot, model)
     }
 
     /// So many times `mission.cut_off_s`, longer for a slow robot, plus the time that its longest detour
     /// takes, in control steps.
-    fn patience(&self, times: f64, robot: &Robot, model: &Model) -> u64 {
+    fn patience(&self, times: f64, robot: &RobotState, model: &Model) -> u64 {
         let speed = self.speed_of(model, robot).max(1e-6);
         let detour_s = f64::from(self.agents[robot.id.index()].progress.allowed_way_m()) / speed;
         let seconds = times * model.mission.cut_off_s * (USUAL_MPS / speed).max(1.0);
@@ -151,13 +152,13 @@ impl Crew {
 
     /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to
     /// do, and do not get there.
-    pub(crate) fn stalled(&self, robots: &[Robot], model: &Model) -> u32 {
-        let stands = |robot: &&Robot| {
+    pub(crate) fn stalled<'r>(&self, robots: impl Iterator<Item = &'r RobotState>, model: &Model) -> u32 {
+        let stands = |robot: &&RobotState| {
             let agent = &self.agents[robot.id.index()];
             let is_held_up = || agent.activity != Activity::Standby && self.is_held_up(robot, model);
             robot.is_able() && (agent.is_cut_off || is_held_up())
         };
-        robots.iter().filter(stands).count() as u32
+        robots.filter(stands).count() as u32
     }
 
     /// Whether nothing can happen any more in a mission: no round can begin, no event is to come, and no
@@ -168,7 +169,7 @@ impl Crew {
 
     /// Whether every robot that can act is at home, or has been cut off and come no nearer for as long again.
     pub(super) fn all_stay(&self, scene: &Scene) -> bool {
-        let stays = |robot: &Robot| {
+        let stays = |robot: &KnownRobot| {
             let (agent, model) = (&self.agents[robot.id.index()], scene.model);
             let is_home = || scene.navigator.traveller(robot.id).has_arrived(robot.position);
             match agent.activity {

@@ -5,10 +5,10 @@ use teaming::Assignment;
 
 use super::question::question;
 use super::{Activity, Mission, Pending, Scene};
+use crate::belief::KnownRobot;
 use crate::belief::{Beliefs, Holder};
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
-use crate::robot::Robot;
 use crate::telemetry::{Now, Telemetry};
 
 impl Mission {
@@ -19,7 +19,7 @@ impl Mission {
         act: impl FnOnce(&mut Telemetry, &Now<'_>, &mut EventLog),
     ) {
         let Scene { model, beliefs, telemetry: Some(telemetry), log, step, .. } = scene else { return };
-        let presence = |robot: &Robot| self.crew.presence(model, robot);
+        let presence = |robot: &KnownRobot| self.crew.presence(model, robot);
         let now = Now { model, team: &beliefs.team, presence: &presence, step: *step, round: self.round };
         act(telemetry, &now, log);
     }
@@ -52,11 +52,10 @@ impl Mission {
         self.round += 1;
         self.claims.given_up.fill(false);
         let is_home: Vec<bool> = self.crew.agents.iter().map(|a| a.activity == Activity::Home).collect();
-        let takes_part = |robot: &Robot| robot.is_able() && is_home[robot.id.index()];
+        let takes_part = |robot: &KnownRobot| robot.is_able() && is_home[robot.id.index()];
         let mut restocked = Vec::new();
         for robot in scene.beliefs.team.iter_mut().filter(|robot| takes_part(robot)) {
-            if robot.resources < robot.spec.resources {
-                robot.resources = robot.spec.resources;
+            if robot.restock() {
                 restocked.push(robot.id);
                 scene.log.push(Event::Restocked { robot: robot.id, resources: robot.resources });
             }
@@ -68,11 +67,11 @@ impl Mission {
             telemetry.note_question(self.round);
         }
         let telemetry = scene.telemetry.as_deref();
-        let as_judged = |robot: &Robot| match (telemetry, &scene.model.telemetry) {
+        let as_judged = |robot: &KnownRobot| match (telemetry, &scene.model.telemetry) {
             (Some(telemetry), Some(rules)) if rules.fitness == LevelSource::Reports => {
                 robot.with_levels(telemetry.levels(rules, robot.id))
             }
-            _ => robot.clone(),
+            _ => (**robot).clone(),
         };
         let (mut fit, mut unfit) = (Vec::new(), Vec::new());
         let tasks = self.crew.groups.len() as u16;
@@ -84,7 +83,7 @@ impl Mission {
                 Some(cause) => unfit.push((robot.id, cause)),
             }
         }
-        let member = |robot: &&Robot| match telemetry {
+        let member = |robot: &&KnownRobot| match telemetry {
             Some(telemetry) => telemetry.member(robot, scene.model),
             None => robot.member(&scene.model.needs),
         };

@@ -4,6 +4,7 @@ use parry2d::math::Vector;
 use teaming::TaskId;
 
 use super::GIVE_UP_S;
+use crate::belief::KnownRobot;
 use crate::belief::{Beliefs, Holder};
 use crate::conflict::Directive;
 use crate::event::EventLog;
@@ -11,7 +12,6 @@ use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::navigation::{Goal, Navigator};
 use crate::report::Report;
-use crate::robot::Robot;
 use crate::telemetry::Telemetry;
 
 /// The parts of a trial that decisions look at and change.
@@ -53,14 +53,14 @@ impl Scene<'_> {
 
     /// Whether a robot has arrived and is really at its goal. The route may end beside a place that debris
     /// covers.
-    pub(super) fn is_at_place(&self, robot: &Robot) -> bool {
+    pub(super) fn is_at_place(&self, robot: &KnownRobot) -> bool {
         let traveller = self.navigator.traveller(robot.id);
         let covers = |goal: Goal| (goal.point - robot.position).length() <= robot.radius().max(goal.within);
         traveller.has_arrived(robot.position) && traveller.goal().is_some_and(covers)
     }
 
     /// Energy that a path of this length costs a robot, in percent points.
-    pub(super) fn way_cost(&self, robot: &Robot, metres: f64, speed: f64) -> f64 {
+    pub(super) fn way_cost(&self, robot: &KnownRobot, metres: f64, speed: f64) -> f64 {
         let costs = &self.model.costs;
         costs.unit.to_percent(costs.of_way(metres, speed), robot.spec.energy)
     }

@@ -7,12 +7,13 @@ mod way_out;
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
+use crate::belief::KnownRobot;
 use crate::belief::{Belief, News};
 use crate::executor::Executor;
 use crate::ids::RobotId;
 use crate::model::{Model, RuleKind};
 use crate::planning::{KnownObstacle, Planner, Query, Route, Walls, polygon_contains};
-use crate::robot::{Robot, STANDING_MPS};
+use crate::robot::STANDING_MPS;
 use trail::Trail;
 use traveller::{Attempt, PROGRESS_M};
 pub use traveller::{Goal, Traveller};
@@ -52,7 +53,7 @@ pub struct Outlook<'o, B, S> {
     /// The fixed part of the trial.
     pub model: &'o Model,
     /// The robots as they said they are.
-    pub team: &'o [Robot],
+    pub team: &'o [KnownRobot],
     /// Steps done.
     pub step: u64,
     /// The belief that a robot shares.
@@ -102,7 +103,7 @@ impl Navigator {
     pub fn plan<'o, B, S>(&mut self, outlook: &Outlook<'o, B, S>, executor: Executor)
     where
         B: Fn(RobotId) -> &'o Belief + Sync,
-        S: Fn(&Robot) -> f64 + Sync,
+        S: Fn(&KnownRobot) -> f64 + Sync,
     {
         let Self { travellers, trails } = self;
         let executor = executor.for_team(outlook.team.len());
@@ -115,7 +116,7 @@ impl Navigator {
 
     /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero
     /// if the robot has no route or has arrived.
-    pub(crate) fn preferred_velocity(&self, robot: &Robot, speed: f32) -> Vector {
+    pub(crate) fn preferred_velocity(&self, robot: &KnownRobot, speed: f32) -> Vector {
         let traveller = &self.travellers[robot.id.index()];
         let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {
             return Vector::ZERO;
@@ -142,10 +143,10 @@ impl Navigator {
 impl<'o, B, S> Outlook<'o, B, S>
 where
     B: Fn(RobotId) -> &'o Belief,
-    S: Fn(&Robot) -> f64,
+    S: Fn(&KnownRobot) -> f64,
 {
     /// Plans the routes of some of the robots, whose journeys these are.
-    fn plan(&self, team: &'o [Robot], travellers: &mut [Traveller], trails: &mut [Trail]) {
+    fn plan(&self, team: &'o [KnownRobot], travellers: &mut [Traveller], trails: &mut [Trail]) {
         let detour_steps = self.model.control_steps_in(DETOUR_AFTER_S);
         for ((robot, traveller), trail) in team.iter().zip(travellers).zip(trails) {
             trail.note(robot.position);
@@ -167,14 +168,14 @@ where
 /// One robot on its way to a goal, and what it knows.
 struct Wayfinder<'w, 'o, B, S> {
     outlook: &'w Outlook<'o, B, S>,
-    robot: &'o Robot,
+    robot: &'o KnownRobot,
     goal: Goal,
     belief: &'o Belief,
     /// Places that it passed, the latest last.
     trail: &'w [Vector],
 }
 
-impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
+impl<B, S: Fn(&KnownRobot) -> f64> Wayfinder<'_, '_, B, S> {
     /// Plans a route if one is due.
     fn keep_on_route(&self, traveller: &mut Traveller, detour_steps: u64) {
         let Self { outlook, robot, belief, .. } = self;
@@ -291,13 +292,13 @@ impl<B, S: Fn(&Robot) -> f64> Wayfinder<'_, '_, B, S> {
     /// goal stays where it is.
     fn standing_near(&self) -> Vec<KnownObstacle> {
         let (robot, clearance) = (self.robot, self.outlook.model.inflation.clearance);
-        let stands = |other: &&Robot| {
+        let stands = |other: &&KnownRobot| {
             other.id != robot.id
                 && other.is_aerial() == robot.is_aerial()
                 && other.velocity.length() < STANDING_MPS
                 && (other.position - robot.position).length() < DETOUR_RANGE_M
         };
-        let obstacle = |other: &Robot| {
+        let obstacle = |other: &KnownRobot| {
             KnownObstacle::wreck(other.id.0, other.position, other.radius(), robot.radius(), clearance)
         };
         let is_off_goal = |other: &KnownObstacle| !polygon_contains(&other.planned, self.goal.point);

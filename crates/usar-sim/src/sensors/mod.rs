@@ -5,6 +5,7 @@
 
 pub(crate) mod base;
 mod debris;
+pub(crate) mod oneself;
 mod radiation;
 mod rescuees;
 pub(crate) mod team_mates;
@@ -15,8 +16,7 @@ use smallvec::SmallVec;
 use crate::belief::Belief;
 use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};
-use crate::robot::Robot;
-use crate::world::World;
+use crate::world::{Robot, World};
 
 /// A robot touches what is nearer to its outline than this, in metres.
 const TOUCH_M: f32 = 0.02;

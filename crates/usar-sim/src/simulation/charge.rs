@@ -5,7 +5,8 @@ use scenario::CostUnit;
 use crate::event::Event;
 use crate::metrics::Metrics;
 use crate::model::MissionModel;
-use crate::robot::{Condition, Robot};
+use crate::robot::Condition;
+use crate::world::Robot;
 
 /// What a robot can lose of energy and HP, in percent: no more than it has, but for energy where robots go on
 /// with an empty battery.

@@ -16,6 +16,7 @@ mod state;
 mod timeline;
 mod view;
 
+use std::ops::Deref;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
@@ -291,7 +292,7 @@ impl Simulation {
             decisions,
             robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, model)).collect(),
             counts: metrics.counts,
-            stalled: mission.crew.stalled(&world.robots, model),
+            stalled: mission.crew.stalled(world.robots.iter().map(Deref::deref), model),
             cut_off: metrics.cut_off,
             overlaps,
             state_hash: chain.digest(),

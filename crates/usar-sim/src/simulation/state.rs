@@ -10,7 +10,7 @@ use teaming::TaskId;
 use super::charge::{bearable, last_event, spend};
 use super::faults::Faults;
 use super::moments::Moments;
-use crate::belief::{Beliefs, Holder};
+use crate::belief::{Beliefs, Holder, KnownRobot};
 use crate::conflict::{self, Delay, Mover, PriorityKey, Resolver};
 use crate::event::{Event, EventLog};
 use crate::executor::Executor;
@@ -21,11 +21,11 @@ use crate::model::Model;
 use crate::navigation::{Navigator, Outlook};
 use crate::record::DecisionRecord;
 use crate::report::{Report, Track};
-use crate::robot::{Robot, STANDING_MPS};
-use crate::sensors::{base, look_around, team_mates};
+use crate::robot::STANDING_MPS;
+use crate::sensors::{base, look_around, oneself, team_mates};
 use crate::tally::{Tally, delay_cause};
 use crate::telemetry::Telemetry;
-use crate::world::{Rescuee, RescueeState, World};
+use crate::world::{Rescuee, RescueeState, Robot, World};
 
 /// Difference between two sums of the same costs that counts as rounding, as a share.
 const COSTS_ROUNDING: f64 = 1e-9;
@@ -107,7 +107,7 @@ impl State {
         Self {
             step: 0,
             sent: model.task_ids().map(|task| base::report(&world, model, task, 0)).collect(),
-            beliefs: Beliefs::nothing(holders, &model.inflation, world.robots.clone()),
+            beliefs: Beliefs::nothing(holders, &model.inflation, &model.robots),
             mission: Mission::new(model),
             navigator: Navigator::new(world.robots.len()),
             resolver: Resolver::new(&model.right_of_way),
@@ -126,8 +126,9 @@ impl State {
     /// the only place that does so.
     pub(super) fn restore(&mut self, model: &Model) {
         let World { robots, debris, rescuees, .. } = &mut self.world;
-        for robots in [robots, &mut self.beliefs.team] {
-            robots.iter_mut().zip(&model.robots).for_each(|(robot, model)| robot.model = Arc::clone(model));
+        for ((robot, known), model) in robots.iter_mut().zip(&mut self.beliefs.team).zip(&model.robots) {
+            robot.model = Arc::clone(model);
+            known.restore(model);
         }
         debris.iter_mut().zip(&model.debris).for_each(|(piece, model)| piece.model = Arc::clone(model));
         rescuees.iter_mut().zip(&model.rescuees).for_each(|(rescuee, model)| rescuee.model = *model);
@@ -175,8 +176,17 @@ impl State {
 
     /// Robots notice their own state, and say so to the whole team.
     pub(super) fn feel(&mut self, model: &Model, heard: &mut Vec<Report>) {
-        self.beliefs.hear_of_selves(&self.world.robots, self.step);
+        self.notice_selves();
         self.hear(model, heard);
+    }
+
+    /// Robots notice their own state, and the whole team hears at once what is new of it.
+    pub(super) fn notice_selves(&mut self) {
+        for robot in &self.world.robots {
+            if let Some(state) = oneself::sense(robot, &self.beliefs.team[robot.id.index()]) {
+                self.beliefs.hear_of_self(state, self.step);
+            }
+        }
     }
 
     /// The reports that were sent are heard: by those who share the belief of their sender, and by its mates
@@ -227,7 +237,7 @@ impl State {
             team: &beliefs.team,
             step: self.step,
             belief_of: |robot| beliefs.of(mission.crew.holder_of(robot, model)),
-            speed_of: |robot: &Robot| faults.speed_of(robot.id, mission.crew.speed_of(model, robot)),
+            speed_of: |robot: &KnownRobot| faults.speed_of(robot.id, mission.crew.speed_of(model, robot)),
         };
         self.navigator.plan(&outlook, scratch.conflict.executor);
     }
@@ -236,7 +246,7 @@ impl State {
     pub(super) fn resolve(&mut self, model: &Model, scratch: &mut Scratch) {
         let (mission, beliefs, navigator) = (&self.mission, &self.beliefs, &self.navigator);
         let mut movers: Vec<Mover> = std::mem::take(&mut scratch.movers);
-        let of = |robot: &Robot| mover(robot, model, mission, beliefs, navigator);
+        let of = |robot: &KnownRobot| mover(robot, model, mission, beliefs, navigator);
         scratch.conflict.executor.for_team(beliefs.team.len()).extend(&mut movers, &beliefs.team, of);
         if !self.faults.is_empty() {
             self.faults.slow(&mut movers);
@@ -390,7 +400,7 @@ fn class_of(task: Option<TaskId>, model: &Model) -> u8 {
 
 /// A robot as the resolver sees it.
 fn mover<'s>(
-    robot: &Robot,
+    robot: &KnownRobot,
     model: &Model,
     mission: &'s Mission,
     beliefs: &'s Beliefs,

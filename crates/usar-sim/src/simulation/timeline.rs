@@ -10,9 +10,8 @@ use crate::event::Event;
 use crate::ids::RobotId;
 use crate::model::{Action, DebrisModel, Model};
 use crate::report::{Report, Speaker, Statement};
-use crate::robot::Robot;
 use crate::sensors::base;
-use crate::world::{RescueeState, World};
+use crate::world::{RescueeState, Robot, World};
 
 /// Debris falls or closes only if no robot may come nearer than this within a few steps, in metres.
 const FREE_M: f32 = 0.1;
@@ -167,7 +166,7 @@ impl State {
         self.log.push(Event::Damaged { robot: id, energy, hp });
         spend(robot, [energy, hp], model.costs.unit, &mut self.listeners.metrics);
         self.log.extend(last_event(robot, &model.mission));
-        self.beliefs.hear_of_selves(&self.world.robots, self.step);
+        self.notice_selves();
     }
 }
 

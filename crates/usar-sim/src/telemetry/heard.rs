@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use teaming::evidence::is_named;
 use teaming::{Evidence, Extent, LevelReport, Rating, RobotRound, RoundOutcome};
 
+use crate::belief::KnownRobot;
 use crate::ids::RobotId;
 use crate::model::Model;
-use crate::robot::Robot;
 
 /// What the base heard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -111,7 +111,12 @@ impl Heard {
     }
 
     /// What the others of a robot's role said of a level on average; `None` if nobody was heard.
-    pub(super) fn mean_of_others(&self, robot: &Robot, team: &[Robot], level: usize) -> Option<f64> {
+    pub(super) fn mean_of_others(
+        &self,
+        robot: &KnownRobot,
+        team: &[KnownRobot],
+        level: usize,
+    ) -> Option<f64> {
         let others = team.iter().filter(|other| other.role == robot.role && other.id != robot.id);
         let said: Vec<f64> =
             others.filter_map(|other| Some(self.last[other.id.index()].as_ref()?.levels[level])).collect();

@@ -3,7 +3,7 @@
 use teaming::{Body, Evidence};
 
 use crate::model::{Model, RobotModel};
-use crate::robot::{HP, Robot};
+use crate::robot::{HP, RobotState};
 
 /// What was heard, with what the base knows besides.
 pub(crate) fn known(model: &Model, heard: Evidence) -> Evidence {
@@ -18,6 +18,6 @@ fn body(robot: &std::sync::Arc<RobotModel>, model: &Model) -> Body {
         floor: robot.health_floor,
         carries: robot.can_carry(),
         guides: robot.spec.guides,
-        needs: Robot::new(robot).level_needs(&model.needs),
+        needs: RobotState::new(robot).level_needs(&model.needs),
     }
 }

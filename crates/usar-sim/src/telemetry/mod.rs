@@ -24,10 +24,10 @@ pub use heard::Heard;
 pub(crate) use heard::named;
 pub(crate) use known::known;
 
+use crate::belief::KnownRobot;
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::model::{Model, TelemetryModel};
-use crate::robot::Robot;
 use channel::Sending;
 use heard::{Report, Trip};
 use lie::{Told, said_of_mate};
@@ -92,9 +92,9 @@ pub struct Now<'n> {
     /// The model.
     pub model: &'n Model,
     /// The robots as they know themselves.
-    pub team: &'n [Robot],
+    pub team: &'n [KnownRobot],
     /// Where each is.
-    pub presence: &'n dyn Fn(&Robot) -> Presence,
+    pub presence: &'n dyn Fn(&KnownRobot) -> Presence,
     /// The step.
     pub step: u64,
     /// The round.
@@ -163,7 +163,7 @@ impl Telemetry {
 
     /// The base asks the robots at home how they are, before a round.
     pub(crate) fn ask_at_home(&mut self, now: &Now<'_>, log: &mut EventLog) {
-        let is_home = |robot: &&Robot| robot.is_able() && (now.presence)(robot).is_home;
+        let is_home = |robot: &&KnownRobot| robot.is_able() && (now.presence)(robot).is_home;
         for robot in now.team.iter().filter(is_home) {
             if std::mem::take(&mut self.takes_new_name[robot.id.index()]) {
                 self.heard.known_since.insert(robot.id.0, now.round);
@@ -192,7 +192,7 @@ impl Telemetry {
 
     /// A robot as a member of a team that is to be grouped, as it was heard last. What the base hands out and
     /// what a robot carries, the base knows.
-    pub(crate) fn member(&self, robot: &Robot, model: &Model) -> Option<Member> {
+    pub(crate) fn member(&self, robot: &KnownRobot, model: &Model) -> Option<Member> {
         let rules = model.telemetry.as_ref()?;
         let heard = robot.with_levels(self.levels(rules, robot.id));
         let member = heard.member(&model.needs)?;
@@ -275,7 +275,7 @@ impl Telemetry {
     }
 
     /// Sends a message. At home it is heard at once, unless the scenario says otherwise.
-    fn send(&mut self, says: Says, robot: &Robot, now: &Now<'_>, log: &mut EventLog) {
+    fn send(&mut self, says: Says, robot: &KnownRobot, now: &Now<'_>, log: &mut EventLog) {
         let Some(rules) = &now.model.telemetry else { return };
         if self.is_mute[robot.id.index()] {
             return;

@@ -12,11 +12,11 @@ use teaming::TaskId;
 
 use super::channel::{Ends, Sending};
 use super::{Now, Telemetry};
+use crate::belief::KnownRobot;
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};
-use crate::robot::Robot;
 
 /// A report for a group-mate that is under way.
 #[derive(Clone, Serialize, Deserialize)]
@@ -79,7 +79,7 @@ impl Telemetry {
     }
 
     /// The rescuee that a liar makes up in this step, if it does: somewhere among those of its group's task.
-    pub(crate) fn phantom(&self, liar: &Robot, bounds: [Vector; 2], now: &Now<'_>) -> Option<Vector> {
+    pub(crate) fn phantom(&self, liar: &KnownRobot, bounds: [Vector; 2], now: &Now<'_>) -> Option<Vector> {
         let rules = now.model.telemetry.as_ref()?;
         let [low, high] = bounds;
         if !liar.is_able() || low.x > high.x {

@@ -11,18 +11,21 @@ use super::gauge::{Reading, read};
 use super::heard::Report;
 use super::lie::Topic;
 use super::{Now, Says, Telemetry};
+use crate::belief::KnownRobot;
 use crate::event::EventLog;
 use crate::ids::RobotId;
 use crate::model::{LieModel, TelemetryModel};
-use crate::robot::Robot;
 
 /// Levels and needs of one robot have numbers of their own in streams of random numbers.
 const TOPICS: u64 = 128;
 
 /// The robots in the order in which they speak at a step. It is drawn where they wait for one another on the
 /// channel; it is that of their ids where nobody waits.
-pub(crate) fn in_turn<'t>(robots: impl Iterator<Item = &'t Robot>, now: &Now<'_>) -> Vec<&'t Robot> {
-    let mut robots: Vec<&Robot> = robots.collect();
+pub(crate) fn in_turn<'t>(
+    robots: impl Iterator<Item = &'t KnownRobot>,
+    now: &Now<'_>,
+) -> Vec<&'t KnownRobot> {
+    let mut robots: Vec<&KnownRobot> = robots.collect();
     if let Some(rules) = now.model.telemetry.as_ref().filter(|rules| rules.has_turns()) {
         robots.shuffle(&mut stream_at(rules.seed, Purpose::Turn, 0, now.step));
     }
@@ -46,7 +49,7 @@ impl Telemetry {
     /// after all of them.
     pub(super) fn report_all<'t>(
         &mut self,
-        robots: impl Iterator<Item = &'t Robot>,
+        robots: impl Iterator<Item = &'t KnownRobot>,
         now: &Now<'_>,
         log: &mut EventLog,
     ) {
@@ -66,7 +69,7 @@ impl Telemetry {
     }
 
     /// What a robot says of how it is, by its gauges and its lies.
-    fn report(&mut self, robot: &Robot, rules: &TelemetryModel, now: &Now<'_>) -> Report {
+    fn report(&mut self, robot: &KnownRobot, rules: &TelemetryModel, now: &Now<'_>) -> Report {
         let id = robot.id;
         let gauges = &rules.gauges[robot.role.index()];
         let last = self.read[id.index()];
@@ -92,7 +95,12 @@ impl Telemetry {
     }
 
     /// What a robot says of its levels and needs, when it read these levels.
-    fn said(&mut self, robot: &Robot, read: [f64; 2], now: &Now<'_>) -> ([f64; 2], BTreeMap<usize, f64>) {
+    fn said(
+        &mut self,
+        robot: &KnownRobot,
+        read: [f64; 2],
+        now: &Now<'_>,
+    ) -> ([f64; 2], BTreeMap<usize, f64>) {
         let (mut levels, mut needs) = (read, BTreeMap::new());
         let Some(rules) = &now.model.telemetry else { return (levels, needs) };
         let mut told = std::mem::take(&mut self.told[robot.id.index()]);

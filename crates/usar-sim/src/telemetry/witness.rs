@@ -4,9 +4,10 @@ use scenario::seed::{Purpose, normal, stream_at};
 use serde::{Deserialize, Serialize};
 use teaming::Rating;
 
+use crate::belief::KnownRobot;
 use crate::ids::RobotId;
 use crate::model::TelemetryModel;
-use crate::robot::{Robot, STANDING_MPS};
+use crate::robot::STANDING_MPS;
 
 /// A mate that was never seen faster than this stood, in metres per second: how fast it can go was not seen.
 const LEAST_MPS: f64 = STANDING_MPS as f64;
@@ -40,7 +41,7 @@ impl Witnesses {
 
     /// Lets a robot look at its mates. `speed_of` gives the speed of a mate that can be seen, set right for
     /// what is known to slow it, and the top speed that follows from what it said.
-    pub(super) fn look(&mut self, robot: &Robot, speed_of: impl Fn(RobotId) -> Option<[f64; 2]>) {
+    pub(super) fn look(&mut self, robot: &KnownRobot, speed_of: impl Fn(RobotId) -> Option<[f64; 2]>) {
         for look in &mut self.0[robot.id.index()] {
             let Some([speed, said]) = speed_of(look.of) else { continue };
             look.looks += 1;

@@ -3,6 +3,7 @@
 mod debris;
 mod effects;
 mod rescuee;
+mod robot;
 mod zones;
 
 use parry2d::bounding_volume::BoundingVolume;
@@ -13,10 +14,11 @@ use serde::{Deserialize, Serialize};
 
 pub use debris::Debris;
 pub use rescuee::{Rescuee, RescueeState, Rescuees};
+pub use robot::Robot;
 
 use crate::model::Model;
 use crate::physics::{DebrisBody, Physics, RobotBody};
-use crate::robot::{Robot, STANDING_MPS};
+use crate::robot::STANDING_MPS;
 use zones::ZoneCounts;
 
 /// Pieces with a smaller gap than this touch, in metres.

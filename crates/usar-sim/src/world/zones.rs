@@ -3,7 +3,7 @@
 use parry2d::math::Vector;
 use scenario::shapes::RadiationZone;
 
-use crate::robot::Robot;
+use super::Robot;
 
 /// Distance to a border in which rounding is lost, in metres.
 const ROUNDING_M: f32 = 0.001;

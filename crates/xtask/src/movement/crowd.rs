@@ -4,8 +4,9 @@
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use scenario::{DebrisFile, DebrisShape, Errand, LayoutError, Normal, RoleFile, Row, Scenario, ScenarioFile};
 use usar_sim::event::Event;
-use usar_sim::robot::{Robot, STANDING_MPS};
+use usar_sim::robot::STANDING_MPS;
 use usar_sim::simulation::{Advance, Simulation};
+use usar_sim::world::Robot;
 
 use super::literature::FREE_SPEED_MPS;
 use crate::worlds::base;

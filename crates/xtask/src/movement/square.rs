@@ -157,7 +157,7 @@ fn arrivals(agents: &[Agent], seed: u64) -> Result<Arrivals, LayoutError> {
         let robots = &simulation.world().robots;
         for (i, a) in robots.iter().enumerate() {
             let overlaps =
-                |b: &usar_sim::robot::Robot| (a.position - b.position).length() < a.radius() + b.radius();
+                |b: &usar_sim::world::Robot| (a.position - b.position).length() < a.radius() + b.radius();
             arrivals.collided |= robots[i + 1..].iter().any(overlaps);
         }
     }
