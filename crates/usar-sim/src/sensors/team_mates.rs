@@ -4,6 +4,7 @@ use parry2d::math::Vector;
 
 use super::View;
 use crate::belief::Belief;
+use crate::ids::RobotId;
 use crate::report::{Report, Statement, Track};
 use crate::world::World;
 
@@ -11,6 +12,13 @@ use crate::world::World;
 /// whatever they say of themselves.
 pub(crate) fn tracks(world: &World) -> impl Iterator<Item = Track> + '_ {
     world.robots.iter().map(|robot| Track { position: robot.position, velocity: robot.velocity })
+}
+
+/// How fast a robot sees another one go, in metres per second; nothing of one that is out of its range.
+pub(crate) fn sighted_mps(world: &World, by: RobotId, of: RobotId) -> Option<f64> {
+    let [by, of] = [by, of].map(|robot| &world.robots[robot.index()]);
+    let is_seen = (of.position - by.position).length() <= by.sensing_range() as f32;
+    is_seen.then(|| f64::from(of.velocity.length()))
 }
 
 /// Reports wrecks that the belief has not heard of.

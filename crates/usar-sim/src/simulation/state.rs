@@ -139,7 +139,15 @@ impl State {
 
     /// The mission, and the scene in which it decides.
     pub(super) fn scene<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>) {
-        let Self { mission, beliefs, sent, navigator, resolver, log, step, timeline, telemetry, .. } = self;
+        let (mission, scene, _) = self.scene_in_world(model);
+        (mission, scene)
+    }
+
+    /// The same, and the world around them for their sensors.
+    fn scene_in_world<'s>(&'s mut self, model: &'s Model) -> (&'s mut Mission, Scene<'s>, &'s World) {
+        let Self {
+            mission, beliefs, sent, navigator, resolver, log, step, timeline, telemetry, world, ..
+        } = self;
         let telemetry = telemetry.as_deref_mut();
         let awaits_event = timeline.is_to_come(model);
         let seen = || step.saturating_sub(model.steps_in(SEEN_AFTER_S));
@@ -157,7 +165,7 @@ impl State {
             awaits_event,
             awaits_opening,
         };
-        (mission, scene)
+        (mission, scene, world)
     }
 
     /// Passes the events of this step from the `from`-th on to the metrics. Returns the number of all events.
@@ -204,8 +212,9 @@ impl State {
 
     /// Robots look at their mates and say how they are; the base hears them.
     pub(super) fn report(&mut self, model: &Model) {
-        let (mission, mut scene) = self.scene(model);
-        mission.with_telemetry(&mut scene, Telemetry::step);
+        let (mission, mut scene, world) = self.scene_in_world(model);
+        let sighted_mps = |by, of| team_mates::sighted_mps(world, by, of);
+        mission.with_telemetry(&mut scene, |telemetry, now, log| telemetry.step(sighted_mps, now, log));
     }
 
     /// Whether nobody is left to bring home and no event is to come. Who is on board of a robot that can no

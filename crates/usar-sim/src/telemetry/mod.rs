@@ -151,10 +151,18 @@ impl Telemetry {
         self.is_mute[robot.index()] = true;
     }
 
-    /// The part of a step: robots look at their mates, report when it is time, and are heard.
-    pub(crate) fn step(&mut self, now: &Now<'_>, log: &mut EventLog) {
+    /// The part of a step: robots look at their mates, report when it is time, and are heard. `sighted_mps` is
+    /// how fast the first robot sees the second go.
+    pub(crate) fn step(
+        &mut self,
+        sighted_mps: impl Fn(RobotId, RobotId) -> Option<f64>,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) {
         let Some(rules) = &now.model.telemetry else { return };
-        self.look(now, rules);
+        let presences: Vec<Presence> = now.team.iter().map(now.presence).collect();
+        self.note_trips(&presences, now, rules);
+        self.look(sighted_mps, &presences, now, rules);
         if now.model.is_due(now.step, rules.every_steps) {
             self.report_all(now.team.iter().filter(|robot| robot.is_able()), now, log);
         }
@@ -240,9 +248,9 @@ impl Telemetry {
         named(&self.heard.history, &self.heard.known_since)
     }
 
-    fn look(&mut self, now: &Now<'_>, rules: &TelemetryModel) {
-        let presences: Vec<Presence> = now.team.iter().map(now.presence).collect();
-        for ((robot, presence), trip) in now.team.iter().zip(&presences).zip(&mut self.trips) {
+    /// The base sees who rests and who is back.
+    fn note_trips(&mut self, presences: &[Presence], now: &Now<'_>, rules: &TelemetryModel) {
+        for ((robot, presence), trip) in now.team.iter().zip(presences).zip(&mut self.trips) {
             if presence.is_resting {
                 trip.rested = true;
                 let whitewashes = |told: &Told| {
@@ -255,21 +263,29 @@ impl Telemetry {
                 trip.back_s = Some(now.time_s());
             }
         }
+    }
+
+    /// Robots in the field look at their mates there.
+    fn look(
+        &mut self,
+        sighted_mps: impl Fn(RobotId, RobotId) -> Option<f64>,
+        presences: &[Presence],
+        now: &Now<'_>,
+        rules: &TelemetryModel,
+    ) {
         let (heard, mean) = (&self.heard, rules.mean_levels());
         let speed_need = now.model.needs.iter().position(|need| need.measures == Measure::Speed);
-        for (robot, presence) in now.team.iter().zip(&presences) {
+        for (robot, presence) in now.team.iter().zip(presences) {
             if !presence.is_in_field || !robot.is_able() {
                 continue;
             }
-            let sensing = robot.sensing_range() as f32;
-            self.witnesses.look(robot, |mate| {
-                let (mate, there) = (&now.team[mate.index()], &presences[mate.index()]);
-                let is_seen = there.is_in_field && (mate.position - robot.position).length() <= sensing;
-                let said = || {
-                    let said = heard.said_needs(mate.id).and_then(|needs| needs.get(&speed_need?).copied());
-                    said.unwrap_or_else(|| mate.speed_at(heard.levels(mate.id, mean)[1]))
-                };
-                is_seen.then(|| [f64::from(mate.velocity.length()) / there.known_loss, said()])
+            self.witnesses.look(robot.id, |mate| {
+                let there = presences[mate.index()];
+                let mps = sighted_mps(robot.id, mate).filter(|_| there.is_in_field)?;
+                let said = heard.said_needs(mate).and_then(|needs| needs.get(&speed_need?).copied());
+                let said =
+                    said.unwrap_or_else(|| now.team[mate.index()].speed_at(heard.levels(mate, mean)[1]));
+                Some([mps / there.known_loss, said])
             });
         }
     }

@@ -4,7 +4,6 @@ use scenario::seed::{Purpose, normal, stream_at};
 use serde::{Deserialize, Serialize};
 use teaming::Rating;
 
-use crate::belief::KnownRobot;
 use crate::ids::RobotId;
 use crate::model::TelemetryModel;
 use crate::robot::STANDING_MPS;
@@ -41,8 +40,8 @@ impl Witnesses {
 
     /// Lets a robot look at its mates. `speed_of` gives the speed of a mate that can be seen, set right for
     /// what is known to slow it, and the top speed that follows from what it said.
-    pub(super) fn look(&mut self, robot: &KnownRobot, speed_of: impl Fn(RobotId) -> Option<[f64; 2]>) {
-        for look in &mut self.0[robot.id.index()] {
+    pub(super) fn look(&mut self, robot: RobotId, speed_of: impl Fn(RobotId) -> Option<[f64; 2]>) {
+        for look in &mut self.0[robot.index()] {
             let Some([speed, said]) = speed_of(look.of) else { continue };
             look.looks += 1;
             if speed > look.speed_mps {
