@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The crates that decide the numbers of every trial. Studies hash their own sources.
-const DECIDING: [&str; 9] = [
+const DECIDING: [&str; 10] = [
     "ron-tree",
     "rne-core",
     "teaming",
     "scenario",
+    "autonomy",
     "frozen-physics",
     "usar-sim",
     "statistics",

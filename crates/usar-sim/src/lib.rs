@@ -15,6 +15,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Whoever decides, in the crate [`autonomy`], knows robots by what they reported. A robot of the world is
+//! another type:
+//!
+//! ```compile_fail,E0308
+//! fn peek(world: &usar_sim::world::World) -> &[usar_sim::belief::KnownRobot] {
+//!     &world.robots
+//! }
+//! ```
+//!
 //! One seed gives one result, bit for bit. Random streams are identified by trial, purpose and entity;
 //! transcendental functions come from `libm`; and nothing iterates over a hash map or reads a clock.
 
@@ -27,33 +36,22 @@ pub const BITS: u32 = 12;
 /// trial raises it instead.
 pub const HASH_FORMAT: u32 = 1;
 
-pub mod belief;
-mod by_x;
-pub mod conflict;
-pub mod event;
-pub mod executor;
+pub use autonomy::{
+    belief, conflict, event, executor, hash, ids, intent, mission, model, navigation, planning, report,
+    robot, telemetry, vitals,
+};
+
 pub mod fit;
-pub mod hash;
-pub mod ids;
-pub mod intent;
 pub mod invariant;
 pub mod metrics;
-pub mod mission;
-pub mod model;
-pub mod navigation;
 pub mod physics;
-pub mod planning;
 mod quiet;
 pub mod record;
-pub mod report;
-pub mod robot;
 pub mod sensors;
 pub mod simulation;
 pub mod snapshot;
 pub mod stage;
 mod tally;
-pub mod telemetry;
-pub mod vitals;
 pub mod world;
 
 /// The programs in the README compile and run.

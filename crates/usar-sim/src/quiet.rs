@@ -11,7 +11,7 @@ use std::mem;
 use parry2d::math::Vector;
 use serde::{Deserialize, Serialize};
 
-use crate::by_x::{ByX, Spot};
+use autonomy::by_x::{ByX, Spot};
 
 /// Bodies with at least this gap, in metres, beyond the way that they go in a step, do not touch.
 const GAP_M: f32 = 0.005;

@@ -131,7 +131,7 @@ impl Resolver {
 
     /// Adapts the velocities of the last directives to how robots move now, by id: under the default rule,
     /// those of robots that are close to others.
-    pub(crate) fn adapt(&mut self, tracks: &[Track], scratch: &mut Scratch) {
+    pub fn adapt(&mut self, tracks: &[Track], scratch: &mut Scratch) {
         if let Rule::Reciprocal(state) = &self.rule {
             state.adapt(&mut self.directives, tracks, scratch);
         }

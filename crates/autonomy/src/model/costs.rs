@@ -35,7 +35,7 @@ impl CostModel {
     }
 
     /// Energy and HP of one step at this speed, in metres per second, in `zones` overlapping radiation zones.
-    pub(crate) fn of_step(&self, speed: f32, moves: bool, zones: usize) -> [f64; 2] {
+    pub fn of_step(&self, speed: f32, moves: bool, zones: usize) -> [f64; 2] {
         let metres = f64::from(speed) * self.dt_s;
         [energy_cost(&self.energy, moves, metres, self.dt_s), hp_cost(&self.hp, zones, metres, self.dt_s)]
     }

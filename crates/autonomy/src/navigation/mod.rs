@@ -69,7 +69,7 @@ impl Navigator {
     }
 
     /// The journeys as they count in the hash chain.
-    pub(crate) fn to_hash(&self) -> impl Serialize + '_ {
+    pub fn to_hash(&self) -> impl Serialize + '_ {
         (&self.travellers, self.trails.iter().map(Trail::digest).collect::<Vec<_>>())
     }
 
@@ -116,7 +116,7 @@ impl Navigator {
 
     /// The velocity that takes a robot along its route: at most `speed`, less before turns and the end. Zero
     /// if the robot has no route or has arrived.
-    pub(crate) fn preferred_velocity(&self, robot: &KnownRobot, speed: f32) -> Vector {
+    pub fn preferred_velocity(&self, robot: &KnownRobot, speed: f32) -> Vector {
         let traveller = &self.travellers[robot.id.index()];
         let Some(route) = traveller.route.as_ref().filter(|_| !traveller.has_arrived(robot.position)) else {
             return Vector::ZERO;

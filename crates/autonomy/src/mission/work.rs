@@ -92,7 +92,7 @@ impl Mission {
     }
 
     /// Takes away the work of a group. The group then goes home, because nothing is left to do.
-    pub(crate) fn withdraw(&mut self, task: TaskId) {
+    pub fn withdraw(&mut self, task: TaskId) {
         for id in self.crew.groups[task.index()].members.clone() {
             self.release_claim(id);
             let agent = self.crew.agent(id);

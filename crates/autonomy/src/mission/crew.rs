@@ -56,12 +56,12 @@ impl Crew {
     }
 
     /// The members of a robot's group, itself among them.
-    pub(crate) fn mates_of(&self, robot: RobotId) -> &[RobotId] {
+    pub fn mates_of(&self, robot: RobotId) -> &[RobotId] {
         self.group_of(robot).map_or(&[], |task| &self.groups[task.index()].members)
     }
 
     /// The belief on which a robot acts; none for the belief of the team at home.
-    pub(crate) fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {
+    pub fn holder_of(&self, robot: RobotId, model: &Model) -> Option<Holder> {
         Some(Holder::of(model.mission.belief_sharing, robot, self.group_of(robot)?))
     }
 
@@ -91,7 +91,7 @@ impl Crew {
     }
 
     /// Notes which groups have a guide that can act.
-    pub(crate) fn look_for_guides(&mut self, rules: &MissionModel, team: &[KnownRobot]) {
+    pub fn look_for_guides(&mut self, rules: &MissionModel, team: &[KnownRobot]) {
         let guides = |id: &RobotId| {
             let robot = &team[id.index()];
             let is_there = rules.resting_guides || !self.agents[id.index()].activity.is_rest();

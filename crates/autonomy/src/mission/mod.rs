@@ -84,7 +84,7 @@ impl Mission {
     }
 
     /// The state of the mission without the claims: a part of the hash chain.
-    pub(crate) fn course(&self) -> impl Serialize + '_ {
+    pub fn course(&self) -> impl Serialize + '_ {
         let Self { crew: Crew { agents, groups, .. }, claims, round, ending, pending } = self;
         (agents, groups, &claims.given_up, round, ending, pending)
     }
@@ -92,7 +92,7 @@ impl Mission {
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
     /// round waits for its assignment: see [`Mission::question`]. With `is_done`, nobody is left to bring
     /// home and no event is to come. Returns the robots that the base restocks.
-    pub(crate) fn prepare(&mut self, is_done: bool, scene: &mut Scene) -> Vec<RobotId> {
+    pub fn prepare(&mut self, is_done: bool, scene: &mut Scene) -> Vec<RobotId> {
         self.crew.look_for_guides(&scene.model.mission, &scene.beliefs.team);
         if !scene.model.errands.is_empty() {
             if self.crew.follow_errands(scene) {
@@ -137,7 +137,7 @@ impl Mission {
     }
 
     /// Decides what every robot does next, and sets its goal.
-    pub(crate) fn act(&mut self, scene: &mut Scene) {
+    pub fn act(&mut self, scene: &mut Scene) {
         if self.ending.is_none() && scene.model.errands.is_empty() {
             self.turn_back(scene);
             for task in scene.model.task_ids() {

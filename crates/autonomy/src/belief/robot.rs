@@ -31,7 +31,7 @@ impl KnownRobot {
     }
 
     /// Its fixed properties, which a snapshot leaves out.
-    pub(crate) fn restore(&mut self, model: &Arc<RobotModel>) {
+    pub fn restore(&mut self, model: &Arc<RobotModel>) {
         self.state.model = Arc::clone(model);
     }
 

@@ -152,7 +152,7 @@ impl Crew {
 
     /// Number of the robots that can act and stand, as far as the watchdog can tell: they have something to
     /// do, and do not get there.
-    pub(crate) fn stalled<'r>(&self, robots: impl Iterator<Item = &'r RobotState>, model: &Model) -> u32 {
+    pub fn stalled<'r>(&self, robots: impl Iterator<Item = &'r RobotState>, model: &Model) -> u32 {
         let stands = |robot: &&RobotState| {
             let agent = &self.agents[robot.id.index()];
             let is_held_up = || agent.activity != Activity::Standby && self.is_held_up(robot, model);

@@ -23,7 +23,7 @@ pub struct Holder(u32);
 
 impl Holder {
     /// Number of beliefs in the field.
-    pub(crate) fn count(sharing: BeliefSharing, tasks: usize, robots: usize) -> usize {
+    pub fn count(sharing: BeliefSharing, tasks: usize, robots: usize) -> usize {
         match sharing {
             BeliefSharing::WithGroup => tasks,
             BeliefSharing::WithNobody | BeliefSharing::ByRadio => robots,
@@ -39,11 +39,7 @@ impl Holder {
     }
 
     /// The beliefs of these members of the group of a task, each once. A group has one without members, too.
-    pub(crate) fn all_in(
-        sharing: BeliefSharing,
-        task: TaskId,
-        members: &[RobotId],
-    ) -> impl Iterator<Item = Self> {
+    pub fn all_in(sharing: BeliefSharing, task: TaskId, members: &[RobotId]) -> impl Iterator<Item = Self> {
         let is_shared = sharing == BeliefSharing::WithGroup;
         let of_group = is_shared.then_some(Self(u32::from(task.0)));
         let own = members.iter().filter(move |_| !is_shared);
@@ -77,7 +73,7 @@ impl Beliefs {
     }
 
     /// The whole team hears at once what a robot reports of itself.
-    pub(crate) fn hear_of_self(&mut self, state: &RobotState, at_step: u64) {
+    pub fn hear_of_self(&mut self, state: &RobotState, at_step: u64) {
         let known = &mut self.team[state.id.index()];
         self.ledger.note_levels(state.id, [known.energy, known.hp], [state.energy, state.hp]);
         known.hear(state, at_step);
@@ -86,7 +82,7 @@ impl Beliefs {
     /// Lets a report be heard by all who share the sender's belief, or by the whole team if the base speaks.
     /// `holder_of` is a function from a robot to its belief. Returns whether the report was newer than what
     /// the sender's belief had heard before.
-    pub(crate) fn hear(&mut self, report: &Report, holder_of: impl Fn(RobotId) -> Option<Holder>) -> bool {
+    pub fn hear(&mut self, report: &Report, holder_of: impl Fn(RobotId) -> Option<Holder>) -> bool {
         match report.from {
             Speaker::Robot(robot) => {
                 let own = holder_of(robot).map(|holder| &mut self.field[holder.0 as usize]);
@@ -102,12 +98,12 @@ impl Beliefs {
     }
 
     /// Lets a report be heard by those who share one belief in the field.
-    pub(crate) fn hear_in_field(&mut self, holder: Holder, report: &Report) {
+    pub fn hear_in_field(&mut self, holder: Holder, report: &Report) {
         self.field[holder.0 as usize].hear(report);
     }
 
     /// The beliefs as they count in the hash chain.
-    pub(crate) fn to_hash(&self) -> impl Serialize + '_ {
+    pub fn to_hash(&self) -> impl Serialize + '_ {
         let Self { field, home, team, ledger } = self;
         let field: Vec<u128> = field.iter().map(Belief::digest).collect();
         (field, home.digest(), KnownRobot::to_hash(team), ledger.to_hash())
@@ -124,7 +120,7 @@ impl Beliefs {
     }
 
     /// Draws the maps of all beliefs again, after a snapshot was read.
-    pub(crate) fn draw_maps(&mut self, inflation: &Inflation) {
+    pub fn draw_maps(&mut self, inflation: &Inflation) {
         self.field.iter_mut().chain([&mut self.home]).for_each(|belief| belief.draw_maps(inflation));
     }
 }

@@ -21,10 +21,7 @@ const TOPICS: u64 = 128;
 
 /// The robots in the order in which they speak at a step. It is drawn where they wait for one another on the
 /// channel; it is that of their ids where nobody waits.
-pub(crate) fn in_turn<'t>(
-    robots: impl Iterator<Item = &'t KnownRobot>,
-    now: &Now<'_>,
-) -> Vec<&'t KnownRobot> {
+pub fn in_turn<'t>(robots: impl Iterator<Item = &'t KnownRobot>, now: &Now<'_>) -> Vec<&'t KnownRobot> {
     let mut robots: Vec<&KnownRobot> = robots.collect();
     if let Some(rules) = now.model.telemetry.as_ref().filter(|rules| rules.has_turns()) {
         robots.shuffle(&mut stream_at(rules.seed, Purpose::Turn, 0, now.step));

@@ -20,9 +20,9 @@ use serde::{Deserialize, Serialize};
 use teaming::{Evidence, Member, Rating, RoundOutcome};
 
 pub use channel::{Channel, Ends, Link};
-pub use heard::Heard;
-pub(crate) use heard::named;
-pub(crate) use known::known;
+pub use heard::{Heard, named};
+pub use known::known;
+pub use speech::in_turn;
 
 use crate::belief::KnownRobot;
 use crate::event::{Event, EventLog};
@@ -32,7 +32,6 @@ use channel::Sending;
 use heard::{Report, Trip};
 use lie::{Told, said_of_mate};
 use radio::ForMate;
-pub(crate) use speech::in_turn;
 use witness::Witnesses;
 
 /// The state of the telemetry.
@@ -109,7 +108,7 @@ impl Now<'_> {
 
 impl Telemetry {
     /// The state before the first report; `None` where the model has no telemetry.
-    pub(crate) fn of(model: &Model) -> Option<Box<Self>> {
+    pub fn of(model: &Model) -> Option<Box<Self>> {
         let (rules, robots) = (model.telemetry.as_ref()?, model.robots.len());
         let told = |lies: &Vec<usize>| lies.iter().map(|lie| Told::new(*lie)).collect();
         Some(Box::new(Self {
@@ -137,23 +136,23 @@ impl Telemetry {
     }
 
     /// A robot begins to tell one of the lies of the timeline.
-    pub(crate) fn begin_lie(&mut self, robot: RobotId, lie: usize) {
+    pub fn begin_lie(&mut self, robot: RobotId, lie: usize) {
         self.told[robot.index()].push(Told::new(lie));
     }
 
     /// A robot tells no more lies.
-    pub(crate) fn be_honest(&mut self, robot: RobotId) {
+    pub fn be_honest(&mut self, robot: RobotId) {
         self.told[robot.index()].clear();
     }
 
     /// The radio of a robot breaks.
-    pub(crate) fn mute(&mut self, robot: RobotId) {
+    pub fn mute(&mut self, robot: RobotId) {
         self.is_mute[robot.index()] = true;
     }
 
     /// The part of a step: robots look at their mates, report when it is time, and are heard. `sighted_mps` is
     /// how fast the first robot sees the second go.
-    pub(crate) fn step(
+    pub fn step(
         &mut self,
         sighted_mps: impl Fn(RobotId, RobotId) -> Option<f64>,
         now: &Now<'_>,
@@ -188,13 +187,13 @@ impl Telemetry {
     }
 
     /// The evidence of the last question.
-    pub(crate) fn evidence(&self, model: &Model) -> Option<Evidence> {
+    pub fn evidence(&self, model: &Model) -> Option<Evidence> {
         let extent = self.heard.extents.last()?;
         Some(known(model, self.heard.log.evidence().as_of(extent)))
     }
 
     /// The levels of a robot as they were heard last, in percent.
-    pub(crate) fn levels(&self, rules: &TelemetryModel, robot: RobotId) -> [f64; 2] {
+    pub fn levels(&self, rules: &TelemetryModel, robot: RobotId) -> [f64; 2] {
         self.heard.levels(robot, rules.mean_levels())
     }
 
@@ -244,7 +243,7 @@ impl Telemetry {
     }
 
     /// The rounds as the base heard of them, as far as their robots still have their names.
-    pub(crate) fn history(&self) -> Vec<RoundOutcome> {
+    pub fn history(&self) -> Vec<RoundOutcome> {
         named(&self.heard.history, &self.heard.known_since)
     }
 

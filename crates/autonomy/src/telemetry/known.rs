@@ -6,7 +6,7 @@ use crate::model::{Model, RobotModel};
 use crate::robot::{HP, RobotState};
 
 /// What was heard, with what the base knows besides.
-pub(crate) fn known(model: &Model, heard: Evidence) -> Evidence {
+pub fn known(model: &Model, heard: Evidence) -> Evidence {
     Evidence { bodies: model.robots.iter().map(|robot| body(robot, model)).collect(), ..heard }
 }
 

@@ -33,7 +33,8 @@ pub enum Condition {
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 pub struct RobotState {
     #[serde(skip)]
-    pub(crate) model: Arc<RobotModel>,
+    /// Its fixed properties, which no snapshot has.
+    pub model: Arc<RobotModel>,
     /// Centre, in metres.
     pub position: Vector,
     /// Velocity, in metres per second.
@@ -68,7 +69,7 @@ impl Deref for RobotState {
 
 impl RobotState {
     /// A robot at home, without motion, with its initial levels.
-    pub(crate) fn new(model: &Arc<RobotModel>) -> Self {
+    pub fn new(model: &Arc<RobotModel>) -> Self {
         let [energy, hp] = model.initial_levels;
         Self {
             model: Arc::clone(model),
@@ -126,7 +127,7 @@ impl RobotState {
     }
 
     /// Number of rescuees for which it has room.
-    pub(crate) fn free_capacity(&self) -> u32 {
+    pub fn free_capacity(&self) -> u32 {
         self.spec.capacity - self.load.len() as u32
     }
 
@@ -141,12 +142,12 @@ impl RobotState {
     }
 
     /// Sensing range at its present health, in metres.
-    pub(crate) fn sensing_range(&self) -> f64 {
+    pub fn sensing_range(&self) -> f64 {
         self.spec.sensing_m * self.health_factor()
     }
 
     /// Observing range at its present health, in metres.
-    pub(crate) fn observing_range(&self) -> f64 {
+    pub fn observing_range(&self) -> f64 {
         self.spec.observing_m * self.health_factor()
     }
 

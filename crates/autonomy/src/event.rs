@@ -313,7 +313,7 @@ pub enum Event {
 
 impl Event {
     /// The event that a report is news to those who share the sender's belief, if there is one of its kind.
-    pub(crate) fn of_report(report: &Report) -> Option<Self> {
+    pub fn of_report(report: &Report) -> Option<Self> {
         let Speaker::Robot(robot) = report.from else { return None };
         match report.says {
             Statement::DebrisLies { debris, .. } => Some(Self::DebrisDiscovered { robot, debris }),
@@ -343,7 +343,7 @@ impl EventLog {
     }
 
     /// Publishes several events, or none.
-    pub(crate) fn extend(&mut self, events: impl IntoIterator<Item = Event>) {
+    pub fn extend(&mut self, events: impl IntoIterator<Item = Event>) {
         self.events.extend(events);
     }
 

@@ -26,7 +26,7 @@ pub struct Report {
 
 /// Where a team-mate is seen to be, and how it moves. Robots that see each other need not say so.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Track {
+pub struct Track {
     /// Its position, in metres.
     pub position: Vector,
     /// Its velocity, in metres per second.

@@ -52,9 +52,9 @@ pub struct Model {
     /// Number of steps of the trial, unless its mission ends before.
     pub steps: u64,
     /// Steps between two links of the hash chain.
-    pub(crate) link_steps: u64,
+    pub link_steps: u64,
     /// Steps from one control step to the next. What robots count, they count in control steps.
-    pub(crate) control_steps: u64,
+    pub control_steps: u64,
     /// Width and height of the arena, in metres.
     pub arena: Vector,
     /// Names of the roles.
@@ -166,7 +166,7 @@ impl Model {
     }
 
     /// Number of steps in this many seconds.
-    pub(crate) fn steps_in(&self, seconds: f64) -> u64 {
+    pub fn steps_in(&self, seconds: f64) -> u64 {
         (seconds / self.dt_s).round() as u64
     }
 
@@ -176,7 +176,7 @@ impl Model {
     }
 
     /// Whether robots look around and choose their velocities in this step.
-    pub(crate) fn is_control_step(&self, step: u64) -> bool {
+    pub fn is_control_step(&self, step: u64) -> bool {
         step.is_multiple_of(self.control_steps)
     }
 

@@ -161,7 +161,7 @@ impl Heard {
 }
 
 /// Rounds without robots that have taken a new name since.
-pub(crate) fn named(rounds: &[RoundOutcome], known_since: &BTreeMap<u32, u32>) -> Vec<RoundOutcome> {
+pub fn named(rounds: &[RoundOutcome], known_since: &BTreeMap<u32, u32>) -> Vec<RoundOutcome> {
     let mut rounds = rounds.to_vec();
     for round in &mut rounds {
         for group in &mut round.groups {

@@ -13,7 +13,7 @@ use crate::telemetry::{Now, Telemetry};
 
 impl Mission {
     /// Lets telemetry, where there is any, do something at this moment of the trial.
-    pub(crate) fn with_telemetry(
+    pub fn with_telemetry(
         &self,
         scene: &mut Scene,
         act: impl FnOnce(&mut Telemetry, &Now<'_>, &mut EventLog),

@@ -29,7 +29,7 @@ impl Claims {
     }
 
     /// The claims without what is given up: a part of the hash chain.
-    pub(crate) fn held(&self) -> impl Serialize + use<> {
+    pub fn held(&self) -> impl Serialize + use<> {
         let claimed = self.by.iter().enumerate().filter_map(|(rescuee, by)| Some((rescuee, (*by)?)));
         (claimed.collect::<SmallVec<[_; 16]>>(), self.changes)
     }

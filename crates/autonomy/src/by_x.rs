@@ -4,14 +4,16 @@ use parry2d::math::Vector;
 
 /// A robot where it is.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Spot {
+pub struct Spot {
+    /// Its place, in metres.
     pub at: Vector,
+    /// Whether it flies.
     pub is_aerial: bool,
 }
 
 /// Robots in order along x. The order is kept from step to step, so that sorting takes linear time.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct ByX {
+pub struct ByX {
     order: Vec<usize>,
     /// The same robots, in this order.
     spots: Vec<Spot>,
@@ -19,7 +21,7 @@ pub(crate) struct ByX {
 
 impl ByX {
     /// Puts the robots in order along x, those of one x by number.
-    pub(crate) fn sort(&mut self, count: usize, spot: impl Fn(usize) -> Spot) {
+    pub fn sort(&mut self, count: usize, spot: impl Fn(usize) -> Spot) {
         if self.order.len() != count {
             self.order = (0..count).collect();
         }
@@ -34,7 +36,7 @@ impl ByX {
     }
 
     /// The robots within `range` metres of a point, in order along x.
-    pub(crate) fn within(&self, point: Vector, range: f32) -> impl Iterator<Item = (usize, Spot)> {
+    pub fn within(&self, point: Vector, range: f32) -> impl Iterator<Item = (usize, Spot)> {
         let first = self.spots.partition_point(|spot| spot.at.x < point.x - range);
         let strip = self.iter().skip(first).take_while(move |(_, spot)| spot.at.x <= point.x + range);
         strip.filter(move |(_, spot)| (spot.at - point).length_squared() < range * range)

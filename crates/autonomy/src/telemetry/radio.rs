@@ -32,13 +32,7 @@ pub struct ForMate {
 
 impl Telemetry {
     /// A robot tells its group-mates what it noticed, unless it hides it.
-    pub(crate) fn tell_mates(
-        &mut self,
-        report: &Report,
-        mates: &[RobotId],
-        now: &Now<'_>,
-        log: &mut EventLog,
-    ) {
+    pub fn tell_mates(&mut self, report: &Report, mates: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
         let (Speaker::Robot(from), Some(rules)) = (report.from, &now.model.telemetry) else { return };
         let Some(medium) = rules.medium.as_ref().filter(|_| !self.is_mute[from.index()]) else { return };
         let is_hidden = matches!(report.says, Statement::ZoneIs { on: true, .. })
@@ -62,7 +56,7 @@ impl Telemetry {
     }
 
     /// The reports that group-mates hear by now, in the order in which they arrive.
-    pub(crate) fn heard_by_mates(&mut self, time_s: f64, log: &mut EventLog) -> Vec<ForMate> {
+    pub fn heard_by_mates(&mut self, time_s: f64, log: &mut EventLog) -> Vec<ForMate> {
         let has_arrived = |told: &mut ForMate| told.heard_s <= time_s;
         let mut arrived: Vec<ForMate> = self.for_mates.extract_if(.., has_arrived).collect();
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
@@ -79,7 +73,7 @@ impl Telemetry {
     }
 
     /// The rescuee that a liar makes up in this step, if it does: somewhere among those of its group's task.
-    pub(crate) fn phantom(&self, liar: &KnownRobot, bounds: [Vector; 2], now: &Now<'_>) -> Option<Vector> {
+    pub fn phantom(&self, liar: &KnownRobot, bounds: [Vector; 2], now: &Now<'_>) -> Option<Vector> {
         let rules = now.model.telemetry.as_ref()?;
         let [low, high] = bounds;
         if !liar.is_able() || low.x > high.x {
@@ -107,7 +101,7 @@ impl Model {
     }
 
     /// The numbers of the rescuees that liars make up for a task, one for each robot.
-    pub(crate) fn phantoms_of(&self, task: TaskId) -> Range<usize> {
+    pub fn phantoms_of(&self, task: TaskId) -> Range<usize> {
         let has_phantoms = self.telemetry.as_ref().is_some_and(|rules| rules.has_phantoms);
         let robots = if has_phantoms { self.robots.len() } else { 0 };
         let first = self.rescuees.len() + task.index() * robots;

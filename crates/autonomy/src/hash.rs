@@ -20,7 +20,7 @@ pub const PARTS: [&str; 10] = [
 ];
 
 /// The hash of a part that a trial does not have. It is not in the digest.
-pub(crate) const ABSENT: u128 = 0;
+pub const ABSENT: u128 = 0;
 
 /// One link of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -49,7 +49,7 @@ pub struct HashChain {
 
 impl HashChain {
     /// Adds a link from the hashes of the parts after `step` steps.
-    pub(crate) fn add(&mut self, step: u64, parts: [u128; PARTS.len()]) {
+    pub fn add(&mut self, step: u64, parts: [u128; PARTS.len()]) {
         let before = self.links.last().map_or(0, |link| link.digest);
         let mut bytes = Vec::with_capacity(16 * (PARTS.len() + 2));
         bytes.extend(before.to_le_bytes());
@@ -87,7 +87,7 @@ const LEAST_BYTES: usize = 1 << 14;
 ///
 /// # Panics
 /// Never: all parts are of types that postcard can write to memory.
-pub(crate) fn part(value: &impl Serialize) -> u128 {
+pub fn part(value: &impl Serialize) -> u128 {
     let mut bytes = BYTES.take();
     let hash = loop {
         match postcard::to_slice(value, &mut bytes) {
@@ -101,7 +101,7 @@ pub(crate) fn part(value: &impl Serialize) -> u128 {
 }
 
 /// Hash of many small things, each as a few words of fixed width: less work than [`part`].
-pub(crate) fn part_of_many<const WORDS: usize>(things: impl Iterator<Item = [u32; WORDS]>) -> u128 {
+pub fn part_of_many<const WORDS: usize>(things: impl Iterator<Item = [u32; WORDS]>) -> u128 {
     let things: Vec<_> = things.map(|words| words.map(u32::to_le_bytes)).collect();
     xxh3_128(things.as_flattened().as_flattened())
 }

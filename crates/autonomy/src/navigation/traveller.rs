@@ -119,7 +119,7 @@ impl Traveller {
     }
 
     /// The narrow passages of the route.
-    pub(crate) fn passages(&self) -> &[Passage] {
+    pub fn passages(&self) -> &[Passage] {
         &self.passages.found
     }
 
@@ -135,7 +135,7 @@ impl Traveller {
     }
 
     /// Whether the planner found no route to the goal.
-    pub(crate) fn leads_nowhere(&self) -> bool {
+    pub fn leads_nowhere(&self) -> bool {
         self.goal.is_some() && self.is_planned && self.route.is_none()
     }
 
