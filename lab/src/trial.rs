@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::rc::Rc;
 
 use recording::{Options, Recorder};
+use scenario::seed::trial_number;
 use serde::{Deserialize, Serialize};
 use teaming::{Assignment, Decision, Question, Session, TrialStart};
 use usar_sim::record::{Status, TrialRecord};
@@ -119,7 +120,9 @@ impl Trial {
         };
         let mut trial = Self { simulation, session, recorder, bytes, policy, refused: None };
         if let Some(session) = &mut trial.session {
-            session.reset(&TrialStart { scenario: &scenario.name, seed }).map_err(Failure::of)?;
+            session
+                .reset(&TrialStart { scenario: &scenario.name, number: trial_number(seed) })
+                .map_err(Failure::of)?;
         }
         Ok((trial, begun))
     }

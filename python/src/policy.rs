@@ -9,6 +9,7 @@ use experiments::experiment::{PolicySpec, with_oracle};
 use programs::{Consent, Launch, Unknown};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
+use scenario::seed::trial_number;
 use teaming::{
     Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Question, Registry, Session,
     TrialStart,
@@ -72,18 +73,19 @@ pub struct Raised(Arc<Mutex<Option<Raise>>>);
 struct Raise {
     error: PyErr,
     policy: String,
-    seed: Option<u64>,
+    trial: Option<u64>,
     round: u32,
 }
 
 impl Raised {
-    /// Raises it as the cause of a `PolicyError`; goes on if there is none.
-    pub fn check(&self, py: Python<'_>) -> PyResult<()> {
+    /// Raises it as the cause of a `PolicyError`, in the trial of one of these seeds; goes on if there is none.
+    pub fn check(&self, py: Python<'_>, seeds: impl IntoIterator<Item = u64>) -> PyResult<()> {
         let taken = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let Some(Raise { error, policy, seed, round }) = taken else { return Ok(()) };
+        let Some(Raise { error, policy, trial, round }) = taken else { return Ok(()) };
         if error.is_instance_of::<PyKeyboardInterrupt>(py) {
             return Err(error);
         }
+        let seed = seeds.into_iter().find(|seed| Some(trial_number(*seed)) == trial);
         let trial = seed.map(|seed| format!(", seed {seed}")).unwrap_or_default();
         let message = format!("policy {policy}{trial}, round {round}: {error}");
         let raised = unanswered(py, message, [seed, Some(round.into())], &policy);
@@ -178,7 +180,7 @@ struct Handle(Arc<Own>);
 
 impl Driver for Handle {
     fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
-        Ok(Box::new(OwnSession { policy: Arc::clone(&self.0), seed: None }))
+        Ok(Box::new(OwnSession { policy: Arc::clone(&self.0), trial: None }))
     }
 
     fn basis(&self) -> Basis {
@@ -192,12 +194,12 @@ impl Driver for Handle {
 
 struct OwnSession {
     policy: Arc<Own>,
-    seed: Option<u64>,
+    trial: Option<u64>,
 }
 
 impl Session for OwnSession {
     fn reset(&mut self, start: &TrialStart<'_>) -> Result<(), PolicyError> {
-        self.seed = Some(start.seed);
+        self.trial = Some(start.number);
         Ok(())
     }
 
@@ -207,7 +209,7 @@ impl Session for OwnSession {
         answer.map(Decision::of).map_err(|error| {
             let told = PolicyError::Other(error.to_string());
             let (policy, round) = (name.clone(), asked.question.round);
-            let raise = Raise { error, policy, seed: self.seed, round };
+            let raise = Raise { error, policy, trial: self.trial, round };
             raised.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(raise);
             stop.store(true, Ordering::Relaxed);
             told

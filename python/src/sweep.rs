@@ -1,8 +1,8 @@
 //! Sweeps.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use experiments::Failure;
 use experiments::experiment::{Experiment, Overrides};
@@ -63,6 +63,7 @@ pub fn sweep(
         progress.as_ref().filter(|_| all > 0).map_or(Ok(()), |told| told.call1(py, (done, all)).map(|_| ()))
     };
     let jobs = jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let seeds = OnceLock::<Vec<u64>>::new();
     let work = || -> Result<(), Failure> {
         let registry = &policies.registry;
         let experiment = match text {
@@ -71,6 +72,7 @@ pub fn sweep(
         };
         experiment.check(false)?;
         experiment.check_start(&out)?;
+        let _ = seeds.set((1..=experiment.trials).map(|trial| experiment.seed(trial)).collect());
         let mut folder = Folder::open(&out, Arc::new(experiment), Opening::default(), &mut |_| ())?;
         let left = missing(&folder, None);
         let there = folder.experiment().count(None) - left.len();
@@ -83,7 +85,7 @@ pub fn sweep(
         folder.finish(&stop)
     };
     let ran = call.wait_for(py, tell, || on_threads(jobs, work));
-    policies.raised.check(py)?;
+    policies.raised.check(py, seeds.into_inner().unwrap_or_default())?;
     ran??.map_err(|failure| raised(py, failure))?;
     tell(py)
 }

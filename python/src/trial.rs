@@ -7,6 +7,7 @@ use experiments::experiment::PolicySpec;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
+use scenario::seed::trial_number;
 use teaming::{Deadline, PolicyError, Question, Session, TrialStart};
 use usar_sim::record::{Status, TrialRecord};
 use usar_sim::simulation::{InTime, Simulation as Trial};
@@ -56,7 +57,7 @@ pub fn to_its_end<'py>(
         Ok(trial.finish())
     };
     let ran = call.wait_for(py, |_| Ok(()), run)?;
-    policies.raised.check(py)?;
+    policies.raised.check(py, [seed])?;
     let record = ran.map_err(|error| failed(py, &spec, [Some(seed), None], &error))?;
     recorded(py, &record, &name, &spec.label)
 }
@@ -68,7 +69,7 @@ fn given_or_rne(policy: Option<Bound<'_, PyAny>>) -> PyResult<Given> {
 
 /// A session of a policy for a trial.
 fn session_of(spec: &PolicySpec, trial: &Trial) -> Result<Box<dyn Session>, PolicyError> {
-    let start = TrialStart { scenario: &trial.scenario().name, seed: trial.seed() };
+    let start = TrialStart { scenario: &trial.scenario().name, number: trial_number(trial.seed()) };
     spec.made().open().and_then(|mut session| session.reset(&start).map(|()| session))
 }
 
@@ -114,7 +115,7 @@ pub fn group(question: &Bound<'_, PyAny>, policy: Option<Bound<'_, PyAny>>) -> P
     let policies = Policies::of(py, vec![given_or_rne(policy)?], &call, false)?;
     let spec = policies.spec(py)?;
     let decision = call.wait_for(py, |_| Ok(()), || spec.made().decide(&question))?;
-    policies.raised.check(py)?;
+    policies.raised.check(py, [])?;
     let round = [None, Some(question.round.into())];
     let decision = decision.map_err(|error| failed(py, &spec, round, &error))?;
     let answer = decision.assignment;

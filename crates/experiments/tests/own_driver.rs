@@ -8,6 +8,7 @@ use std::sync::{Arc, Mutex};
 use experiments::experiment::{Experiment, Overrides};
 use experiments::provenance::Manifest;
 use experiments::run::Sessions;
+use scenario::seed::trial_number;
 use serde::{Deserialize, Serialize};
 use teaming::{
     Asked, Basis, Decision, Driver, MadePolicy, PolicyError, PolicyKind, Registry, Session, TrialStart,
@@ -26,7 +27,7 @@ struct Options {
 #[derive(Default)]
 struct Seen {
     opened: AtomicU64,
-    seeds: Mutex<Vec<u64>>,
+    trials: Mutex<Vec<u64>>,
     /// For each question, whether the truth and the running trial came with it.
     told: Mutex<Vec<[bool; 2]>>,
 }
@@ -65,7 +66,7 @@ struct EchoSession {
 
 impl Session for EchoSession {
     fn reset(&mut self, trial: &TrialStart<'_>) -> Result<(), PolicyError> {
-        self.seen.seeds.lock().unwrap().push(trial.seed);
+        self.seen.trials.lock().unwrap().push(trial.number);
         self.of.reset(trial)
     }
 
@@ -118,7 +119,7 @@ fn a_session_is_kept_over_trials_and_shares_them_only_if_its_answers_follow_from
         }
         assert_eq!(experiment.simulated(), simulated, "known {is_known}");
         assert_eq!(seen.opened.load(Ordering::Relaxed), 1);
-        assert_eq!(*seen.seeds.lock().unwrap(), [experiment.seed(1), experiment.seed(2)]);
+        assert_eq!(*seen.trials.lock().unwrap(), [1, 2].map(|trial| trial_number(experiment.seed(trial))));
     }
 }
 

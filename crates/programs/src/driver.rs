@@ -330,7 +330,7 @@ impl Session for ProgramSession {
         let is_same = self
             .trial
             .as_ref()
-            .is_some_and(|(seed, scenario)| *seed == start.seed && scenario == start.scenario);
+            .is_some_and(|(number, scenario)| *number == start.number && scenario == start.scenario);
         match (&self.lost, is_same) {
             // What is late is told by the next question.
             (None | Some(PolicyError::Late), true) => return Ok(()),
@@ -338,7 +338,7 @@ impl Session for ProgramSession {
             (_, false) => {}
         }
         self.end_trial();
-        self.trial = Some((start.seed, start.scenario.to_owned()));
+        self.trial = Some((start.number, start.scenario.to_owned()));
         self.trials += 1;
         if self.process.is_none() {
             self.lost = None;

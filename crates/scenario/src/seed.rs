@@ -3,8 +3,8 @@
 //! A stream is identified by the trial's seed, a purpose and an entity, and by nothing else. The policy, the
 //! number of robots and the order of other draws do not affect it (common random numbers).
 
-use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
+use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, Open01};
 
 /// The purpose of a stream. Its number enters the seed and never changes, because a change would alter every
@@ -39,6 +39,13 @@ pub enum Purpose {
     Phantom = 13,
     /// The order in which robots speak at a step.
     Turn = 14,
+    /// The number by which sessions know the trial.
+    Trial = 15,
+}
+
+/// The number by which sessions know a trial. Its seed, from which the truth follows, does not follow from it.
+pub fn trial_number(trial_seed: u64) -> u64 {
+    stream(trial_seed, Purpose::Trial, 0).next_u64()
 }
 
 /// The stream of one purpose and entity in one trial.
@@ -67,8 +74,6 @@ pub fn normal(stream: &mut ChaCha8Rng, mean: f64, standard_deviation: f64) -> f6
 
 #[cfg(test)]
 mod tests {
-    use rand::Rng;
-
     use super::*;
 
     #[test]

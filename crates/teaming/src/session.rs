@@ -117,8 +117,8 @@ pub trait Session: Send {
 pub struct TrialStart<'a> {
     /// Name of the scenario.
     pub scenario: &'a str,
-    /// Seed of the trial.
-    pub seed: u64,
+    /// Number of the trial, by which a session can tell trials apart. Its seed does not follow from it.
+    pub number: u64,
 }
 
 /// A question, and who asks it.

@@ -11,6 +11,7 @@ use std::time::Instant;
 use experiments::Failure;
 use experiments::experiment::PolicySpec;
 use scenario::Scenario;
+use scenario::seed::trial_number;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use teaming::{PolicyError, Session, TrialStart};
 use terminal_size::terminal_size_of;
@@ -62,7 +63,7 @@ pub fn session_of(spec: &PolicySpec, scenario: &Scenario, seed: u64) -> Result<B
     let failed = |error: PolicyError| format!("policy {}: {error}", spec.label);
     let mut session = spec.made().open().map_err(|error| Failure::input(failed(error)))?;
     session
-        .reset(&TrialStart { scenario: &scenario.name, seed })
+        .reset(&TrialStart { scenario: &scenario.name, number: trial_number(seed) })
         .map_err(|error| Failure::run(failed(error)))?;
     Ok(session)
 }

@@ -59,7 +59,7 @@ pub enum DispatchError {
 /// # Errors
 /// The policy does not answer, or not so that all tasks are done.
 pub fn dispatch(problem: &Problem, session: &mut dyn Session) -> Result<f64, DispatchError> {
-    session.reset(&TrialStart { scenario: &problem.name, seed: 0 })?;
+    session.reset(&TrialStart { scenario: &problem.name, number: 0 })?;
     let mut schedule = Schedule::new(problem);
     let (mut now, mut decision) = (0.0, 0);
     while schedule.ends.iter().any(Option::is_none) {

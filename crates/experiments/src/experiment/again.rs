@@ -1,6 +1,7 @@
 //! Reproducing results: a command for one trial, and a file for the whole sweep.
 
 use ron_tree::Node;
+use scenario::seed::trial_number;
 use teaming::{Asked, TrialStart};
 use usar_sim::record::{DecisionRecord, TrialRecord};
 
@@ -40,7 +41,8 @@ impl Experiment {
         if !spec.is_of_question() {
             return None;
         }
-        let start = TrialStart { scenario: &self.cases[key.case].scenario.name, seed: key.seed };
+        let start =
+            TrialStart { scenario: &self.cases[key.case].scenario.name, number: trial_number(key.seed) };
         let first_other = || {
             let mut session = spec.made().open().ok()?;
             session.reset(&start).ok()?;

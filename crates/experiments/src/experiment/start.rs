@@ -3,6 +3,7 @@
 use std::fmt::Display;
 use std::path::Path;
 
+use scenario::seed::trial_number;
 use store::Failure;
 use teaming::{Asked, Assignment, Basis, PolicyError, Session, TrialStart};
 use usar_sim::simulation::Simulation;
@@ -46,7 +47,7 @@ impl Experiment {
         trial.advance();
         let (Some(question), team) = (trial.question(), trial.team()) else { return Ok(()) };
         let asked = Asked::of(question).knowing(&team);
-        let start = TrialStart { scenario: &case.scenario.name, seed };
+        let start = TrialStart { scenario: &case.scenario.name, number: trial_number(seed) };
         let is_asked = |spec: &PolicySpec| spec.is_of_question() && spec.made().it.basis() != Basis::Absent;
         for (number, spec) in self.policies.iter().enumerate().filter(|(_, spec)| is_asked(spec)) {
             let refused = |error: &dyn Display| format!("{place}seed {seed}: policy {}: {error}", spec.label);

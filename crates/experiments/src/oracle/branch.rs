@@ -1,5 +1,6 @@
 //! One branch of a trial: a decision and its outcome.
 
+use scenario::seed::trial_number;
 use serde::{Deserialize, Serialize};
 use store::Failure;
 use teaming::{AssignmentError, Deadline, Decision, PolicyError, Session, TrialStart};
@@ -142,7 +143,7 @@ fn failed(reason: String, halt: Deadline<'_>) -> BranchError {
 
 /// Lets a session know whose questions it answers.
 fn reset(session: &mut dyn Session, trial: &Simulation) -> Result<(), BranchError> {
-    Ok(session.reset(&TrialStart { scenario: &trial.scenario().name, seed: trial.seed() })?)
+    Ok(session.reset(&TrialStart { scenario: &trial.scenario().name, number: trial_number(trial.seed()) })?)
 }
 
 fn look(trial: &Simulation, halt: Deadline<'_>) -> Result<(), BranchError> {

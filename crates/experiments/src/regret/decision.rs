@@ -1,5 +1,6 @@
 //! One decision of a study: the question, and the outcome of every assignment.
 
+use scenario::seed::trial_number;
 use serde::{Deserialize, Serialize};
 use teaming::{
     Asked, Assignment, Deadline, Decision, Member, PolicyError, Question, Session, TrialStart, assignments,
@@ -90,7 +91,7 @@ pub fn play_decisions(
     let seed = trial.seed();
     let failed = |error: &dyn std::fmt::Display| BranchError::Failed(format!("seed {seed}: {error}"));
     let scenario = trial.scenario().name.clone();
-    let start = TrialStart { scenario: &scenario, seed };
+    let start = TrialStart { scenario: &scenario, number: trial_number(seed) };
     session.reset(&start)?;
     plan.named.iter_mut().try_for_each(|session| session.reset(&start))?;
     let mut played = Vec::new();

@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use ron_tree::Problem;
 use scenario::Scenario;
+use scenario::seed::trial_number;
 use serde::{Deserialize, Serialize};
 use teaming::{Deadline, PolicyError, Session, TrialStart};
 use usar_sim::event::Event;
@@ -153,7 +154,7 @@ pub struct TrialSetup<'a> {
 impl TrialSetup<'_> {
     /// The trial as a session gets to know it.
     pub fn start(&self) -> TrialStart<'_> {
-        TrialStart { scenario: &self.scenario.name, seed: self.seed }
+        TrialStart { scenario: &self.scenario.name, number: trial_number(self.seed) }
     }
 }
 

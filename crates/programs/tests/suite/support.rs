@@ -64,14 +64,14 @@ pub fn is_there(program: &str, arguments: &[&str]) -> bool {
     quiet.is_ok_and(|status| status.success())
 }
 
-/// The trial of a seed.
-pub fn trial(seed: u64) -> TrialStart<'static> {
-    TrialStart { scenario: "paper", seed }
+/// The trial of a number.
+pub fn trial(number: u64) -> TrialStart<'static> {
+    TrialStart { scenario: "paper", number }
 }
 
-/// Asks a question in the trial of a seed.
-pub fn ask(session: &mut dyn Session, seed: u64, question: &Question) -> Result<Decision, PolicyError> {
-    session.reset(&trial(seed))?;
+/// Asks a question in the trial of a number.
+pub fn ask(session: &mut dyn Session, number: u64, question: &Question) -> Result<Decision, PolicyError> {
+    session.reset(&trial(number))?;
     session.decide(&Asked::of(question))
 }
 

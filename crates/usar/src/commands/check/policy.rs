@@ -92,7 +92,7 @@ fn timed(
     seed: u64,
     question: &Question,
 ) -> (Result<Assignment, String>, Duration) {
-    let reset = session.reset(&TrialStart { scenario: "check", seed });
+    let reset = session.reset(&TrialStart { scenario: "check", number: seed });
     let begun = Instant::now();
     let answer = reset.and_then(|()| session.decide(&Asked::of(question)));
     let took = begun.elapsed();
