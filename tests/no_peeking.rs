@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use scenario::Scenario;
-use teaming::Asked;
+use teaming::{Asked, Decision, PolicyError, Session};
 use usar_sim::event::Event;
 use usar_sim::ids::{RescueeId, RobotId};
 use usar_sim::mission::Activity;
@@ -131,4 +131,22 @@ fn where_nobody_shares_beliefs_robots_go_only_for_what_they_have_seen_themselves
     assert!(hearsay == 0 && all > 10, "{hearsay} of {all}");
     let [hearsay, all] = claims_by_hearsay(&paper());
     assert!(hearsay > 0 && all > 10, "in a group, what one has seen all know: {hearsay} of {all}");
+}
+
+/// A session of one's own, of no driver, that answers by a rule and notes what it gets beside the question.
+struct Looks<'s>(&'s mut dyn Session, &'s mut Vec<bool>);
+
+impl Session for Looks<'_> {
+    fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        self.1.push(asked.truth().is_some() || asked.trial().is_some());
+        self.0.decide(asked)
+    }
+}
+
+#[test]
+fn a_session_that_declares_nothing_gets_neither_the_truth_nor_the_trial() {
+    let (mut rule, mut seen) = (policy("RANDOM"), Vec::new());
+    let record = Simulation::new(&paper_with(&[("duration_s: 600.0", "duration_s: 200.0")]), 1).unwrap();
+    let record = record.run(Looks(&mut *rule, &mut seen), |_, _, _| {});
+    assert!(!record.decisions.is_empty() && seen == vec![false; record.decisions.len()]);
 }

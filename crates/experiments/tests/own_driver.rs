@@ -71,7 +71,7 @@ impl Session for EchoSession {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        self.seen.told.lock().unwrap().push([asked.truth.is_some(), asked.trial.is_some()]);
+        self.seen.told.lock().unwrap().push([asked.truth().is_some(), asked.trial().is_some()]);
         self.of.decide(asked)
     }
 }

@@ -101,10 +101,10 @@ impl Session for GuidedSession {
         if self.trust_use.leaves_idle() && !question.may_idle {
             return Err(PolicyError::MayNotIdle { policy: self.label.clone() });
         }
-        let estimates = self.estimator.estimate(question, asked.truth)?;
+        let estimates = self.estimator.estimate(question, asked.truth())?;
         let believed = Some(estimates.clone());
         let judged = self.trust_use.judged(question, estimates)?;
-        let mut decision = self.rule.decide(&Asked { question: &judged.question, ..*asked })?;
+        let mut decision = self.rule.decide(&asked.about(&judged.question))?;
         let others = decision.alternatives.iter_mut().map(|other| &mut other.assignment);
         for assignment in std::iter::once(&mut decision.assignment).chain(others) {
             assignment.idle.extend(&judged.excluded);

@@ -87,8 +87,7 @@ impl MadePolicy {
     /// # Errors
     /// The session cannot be opened.
     pub fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
-        let it = self.it.open()?;
-        Ok(Box::new(Declared { it, needs_truth: self.it.needs_truth(), needs_trial: self.it.needs_trial() }))
+        Ok(Box::new(Declared::open(&*self.it)?))
     }
 
     /// The same policy under the label that it has in tables.

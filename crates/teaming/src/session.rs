@@ -128,23 +128,62 @@ pub struct Asked<'a> {
     pub question: &'a Question,
     /// When it is too late to answer.
     pub deadline: Deadline<'a>,
-    /// What is true, for drivers that [need the truth](Driver::needs_truth). Nobody else gets it.
-    pub truth: Option<Truth<'a>>,
-    /// The running trial, for drivers that [need it](Driver::needs_trial), to play it on. No other gets it.
-    pub trial: Option<&'a dyn Any>,
+    truth: Option<Truth<'a>>,
+    trial: Option<&'a dyn Any>,
+    needs: Needs,
+}
+
+/// What a driver has declared that it needs besides the question.
+#[derive(Debug, Clone, Copy, Default)]
+struct Needs {
+    truth: bool,
+    trial: bool,
 }
 
 impl<'a> Asked<'a> {
     /// A question that is asked outside of a trial and without a deadline.
     #[must_use]
     pub fn of(question: &'a Question) -> Self {
-        Self { question, deadline: Deadline::NEVER, truth: None, trial: None }
+        Self { question, deadline: Deadline::NEVER, truth: None, trial: None, needs: Needs::default() }
     }
 
     /// The same, by someone who knows how the members really are.
     #[must_use]
     pub fn knowing(self, team: &'a [Member]) -> Self {
         Self { truth: Some(Truth(team)), ..self }
+    }
+
+    /// The same, in a running trial.
+    #[must_use]
+    pub fn within(self, trial: &'a dyn Any) -> Self {
+        Self { trial: Some(trial), ..self }
+    }
+
+    /// Another question at the same moment.
+    pub(crate) fn about<'q>(&self, question: &'q Question) -> Asked<'q>
+    where
+        'a: 'q,
+    {
+        Asked { question, ..*self }
+    }
+
+    /// The same, to be answered before this deadline.
+    #[must_use]
+    pub fn until(self, deadline: Deadline<'a>) -> Self {
+        Self { deadline, ..self }
+    }
+
+    /// What is true, for a session of a driver that [needs the truth](Driver::needs_truth). No other gets it.
+    #[must_use]
+    pub fn truth(&self) -> Option<Truth<'a>> {
+        self.truth.filter(|_| self.needs.truth)
+    }
+
+    /// The running trial, for a session of a driver that [needs it](Driver::needs_trial), to play it on. No
+    /// other gets it.
+    #[must_use]
+    pub fn trial(&self) -> Option<&'a dyn Any> {
+        self.trial.filter(|_| self.needs.trial)
     }
 }
 
@@ -214,9 +253,16 @@ impl<S: Session + ?Sized> Session for &mut S {
 
 /// A session that gets of the truth and of the trial what its driver has declared.
 pub(crate) struct Declared {
-    pub(crate) it: Box<dyn Session>,
-    pub(crate) needs_truth: bool,
-    pub(crate) needs_trial: bool,
+    it: Box<dyn Session>,
+    needs: Needs,
+}
+
+impl Declared {
+    /// Opens a session of a driver.
+    pub(crate) fn open(driver: &dyn Driver) -> Result<Self, PolicyError> {
+        let needs = Needs { truth: driver.needs_truth(), trial: driver.needs_trial() };
+        Ok(Self { it: driver.open()?, needs })
+    }
 }
 
 impl Session for Declared {
@@ -225,9 +271,7 @@ impl Session for Declared {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        let truth = asked.truth.filter(|_| self.needs_truth);
-        let trial = asked.trial.filter(|_| self.needs_trial);
-        self.it.decide(&Asked { truth, trial, ..*asked })
+        self.it.decide(&Asked { needs: self.needs, ..*asked })
     }
 }
 

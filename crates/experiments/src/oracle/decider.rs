@@ -120,8 +120,8 @@ struct OracleSession {
 
 impl Session for OracleSession {
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        let Asked { question, deadline, trial, .. } = *asked;
-        let Some(trial) = trial.and_then(|trial| trial.downcast_ref::<Simulation>()) else {
+        let Asked { question, deadline, .. } = *asked;
+        let Some(trial) = asked.trial().and_then(|trial| trial.downcast_ref::<Simulation>()) else {
             return Err(PolicyError::NoTrial { policy: NAME.to_owned() });
         };
         let refused = |error: &dyn std::fmt::Display| PolicyError::Other(format!("{NAME}: {error}"));

@@ -104,7 +104,7 @@ pub fn play_decisions(
         };
         let team = trial.team();
         let asked = Asked::of(&question).knowing(&team);
-        let asked = Asked { deadline: plan.halt, trial: Some(&trial), ..asked };
+        let asked = asked.within(&trial).until(plan.halt);
         let decision = session.decide(&asked).map_err(|error| match error {
             PolicyError::Late if plan.halt.is_over() => BranchError::Halted,
             error => failed(&error),
@@ -127,7 +127,7 @@ impl Plan<'_> {
         let mut named = vec![decision.assignment.clone()];
         for session in &mut self.named {
             // A policy that cannot group this team is skipped. The tables leave it out, too.
-            let asked = Asked { deadline: self.halt, ..Asked::of(&question).knowing(&team) };
+            let asked = Asked::of(&question).knowing(&team).until(self.halt);
             named.extend(session.decide(&asked).map(|decision| decision.assignment));
         }
         let (halt, onwards) = (self.halt, &mut self.onwards);

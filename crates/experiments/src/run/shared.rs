@@ -23,8 +23,7 @@ const KEPT_OF_SEED: usize = 256;
 fn as_decided_by(trial: &Trial, session: &mut dyn Session, deadline: Deadline<'_>) -> Option<Trial> {
     let decide = |asked: &DecisionRecord| {
         let question = &trial.record.question(asked);
-        let decision =
-            session.decide(&Asked { deadline, ..Asked::of(question).knowing(asked.team()) }).ok()?;
+        let decision = session.decide(&Asked::of(question).knowing(asked.team()).until(deadline)).ok()?;
         let is_same = decision.assignment == asked.decision.assignment;
         is_same.then(|| DecisionRecord { decision, ..asked.clone() })
     };

@@ -75,7 +75,7 @@ fn a_deadline_ends_the_program_at_once() {
     });
     let since = Instant::now();
     let question = small();
-    let asked = Asked { deadline: Deadline::when(&flag), ..Asked::of(&question) };
+    let asked = Asked::of(&question).until(Deadline::when(&flag));
     assert_eq!(session.decide(&asked), Err(PolicyError::Late));
     assert!(since.elapsed() < Duration::from_secs(1), "{:?}", since.elapsed());
     nothing_lives(folder.path());

@@ -21,6 +21,6 @@ impl<S: Session> Session for InTime<'_, S> {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        self.session.decide(&Asked { deadline: self.deadline, ..*asked })
+        self.session.decide(&asked.until(self.deadline))
     }
 }

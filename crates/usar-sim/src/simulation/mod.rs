@@ -20,7 +20,7 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use teaming::{Asked, AssignmentError, Decision, Member, Question, Session, Truth};
+use teaming::{Asked, AssignmentError, Decision, Member, Question, Session};
 use thiserror::Error;
 
 use crate::event::Event;
@@ -226,7 +226,7 @@ impl Simulation {
     fn answer(&mut self, session: &mut impl Session) {
         let Some(question) = &self.question else { return };
         let team = self.team();
-        let asked = Asked { truth: Some(Truth(&team)), trial: Some(self), ..Asked::of(question) };
+        let asked = Asked::of(question).knowing(&team).within(self);
         let taken = match session.decide(&asked) {
             Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),

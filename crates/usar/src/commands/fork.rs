@@ -71,7 +71,7 @@ impl Arguments {
         let question = trial.question().ok_or_else(|| Failure::run("the trial asks nothing"))?;
         let start = trial.checkpoint();
         let team = trial.team();
-        let question = Asked { deadline: stop, trial: Some(&trial), ..Asked::of(question).knowing(&team) };
+        let question = Asked::of(question).knowing(&team).within(&trial).until(stop);
         let was = base.decide(&question).map_err(Failure::run)?;
         let session = |spec| session_of(spec, &asked.scenario, asked.seed);
         let mut other_session = other.as_ref().map(session).transpose()?;
