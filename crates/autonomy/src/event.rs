@@ -319,7 +319,11 @@ impl Event {
             Statement::DebrisLies { debris, .. } => Some(Self::DebrisDiscovered { robot, debris }),
             Statement::ZoneIs { zone, .. } => Some(Self::ZoneDiscovered { robot, zone }),
             Statement::RescueeWaits { rescuee, .. } => Some(Self::Sighted { robot, rescuee }),
-            Statement::RescueeIsGone { .. } | Statement::TaskIs { .. } | Statement::WreckLies { .. } => None,
+            Statement::RescueeIsGone { .. }
+            | Statement::TaskIs { .. }
+            | Statement::WreckLies { .. }
+            | Statement::LevelsAre(_)
+            | Statement::MateGoes(_) => None,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Reports: who says what about which thing, as of when, and how sure.
+//! Reports: who says what about which thing, as of when, and how sure. Messages bring them to a hearer.
 //!
 //! Sensors make reports, and a [belief](crate::belief) is a fold over those that were heard, at once or by
 //! [radio](crate::telemetry). A report may be late, missing or false.
@@ -7,7 +7,7 @@ use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
 use scenario::shapes::RadiationZone;
 use serde::{Deserialize, Serialize};
-use teaming::TaskId;
+use teaming::{LevelReport, Rating, TaskId};
 
 use crate::ids::{RescueeId, RobotId};
 
@@ -23,6 +23,26 @@ pub struct Report {
     /// Standard deviation of a stated place, in metres; 0 for an exact one.
     pub sd_m: f32,
 }
+
+/// A report on its way to one hearer.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Message {
+    /// Who sends it. The report may be in the name of another.
+    pub sender: RobotId,
+    /// Who is to hear it: a robot, or the base.
+    pub to: Option<RobotId>,
+    /// When it is sent, in seconds.
+    pub sent_s: f64,
+    /// When it is heard, in seconds.
+    pub heard_s: f64,
+    /// Whether it goes over the medium.
+    pub by_radio: bool,
+    /// The report.
+    pub report: Report,
+}
+
+/// What a robot says of its energy and its HP, in percent, as it lies in the state of a trial.
+pub type Levels = LevelReport<[f64; 2]>;
 
 /// Where a team-mate is seen to be, and how it moves. Robots that see each other need not say so.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,4 +116,8 @@ pub enum Statement {
         /// Whether it is in nobody's way, because it flies.
         is_aerial: bool,
     },
+    /// A robot has these levels and needs.
+    LevelsAre(Levels),
+    /// A robot goes so fast.
+    MateGoes(Rating),
 }

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use teaming::evidence::is_named;
-use teaming::{Evidence, Extent, LevelReport, Rating, RobotRound, RoundOutcome};
+use teaming::{Evidence, Extent, Rating, RobotRound, RoundOutcome};
 
 use crate::belief::KnownRobot;
 use crate::ids::RobotId;
 use crate::model::Model;
+use crate::report::{Levels, Message, Statement};
 
 /// What the base heard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,7 +36,7 @@ pub struct Heard {
 pub struct Log {
     /// It stays as it is. The hash of a trial has counted it from the start.
     energy_threshold: f64,
-    reports: Vec<Report>,
+    reports: Vec<Levels>,
     ratings: Vec<Rating>,
     ledger: Vec<RobotRound>,
     /// It stays empty, for the same reason.
@@ -52,16 +53,13 @@ impl Log {
     /// All of it, as questions have it.
     pub fn evidence(&self) -> Evidence {
         Evidence {
-            reports: self.reports.iter().map(Report::listed).collect(),
+            reports: self.reports.iter().map(Levels::listed).collect(),
             ratings: self.ratings.clone(),
             ledger: self.ledger.clone(),
             ..Evidence::default()
         }
     }
 }
-
-/// What a robot says of its energy and its HP, as it lies in the state of a trial.
-pub type Report = LevelReport<[f64; 2]>;
 
 /// What was said of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -85,8 +83,23 @@ impl Heard {
         }
     }
 
+    /// Hears a message to the base.
+    pub(super) fn hear(&mut self, message: Message) {
+        match message.report.says {
+            Statement::LevelsAre(levels) => self.hear_levels(Levels { heard_s: message.heard_s, ..levels }),
+            Statement::MateGoes(rating) => self.log.ratings.push(rating),
+            // Of the field robots speak among themselves.
+            Statement::DebrisLies { .. }
+            | Statement::ZoneIs { .. }
+            | Statement::RescueeWaits { .. }
+            | Statement::RescueeIsGone { .. }
+            | Statement::TaskIs { .. }
+            | Statement::WreckLies { .. } => {}
+        }
+    }
+
     /// Hears what was said of a robot. What was sent before the last that was heard is evidence only.
-    pub(super) fn hear_levels(&mut self, report: Report) {
+    fn hear_levels(&mut self, report: Levels) {
         let said = Said { sent_s: report.sent_s, levels: report.levels, needs: report.needs.clone() };
         let of = report.of as usize;
         self.log.reports.push(report);
@@ -99,10 +112,6 @@ impl Heard {
             }
         }
         self.last[of] = Some(said);
-    }
-
-    pub(super) fn hear_rating(&mut self, rating: Rating) {
-        self.log.ratings.push(rating);
     }
 
     /// The levels of a robot as they were said last, in percent.
@@ -186,7 +195,7 @@ mod tests {
 
     #[test]
     fn what_was_sent_earlier_and_is_heard_later_is_evidence_only() {
-        let report = |sent_s: f64, energy: f64| Report {
+        let report = |sent_s: f64, energy: f64| Levels {
             of: 0,
             by: 0,
             round: 1,

@@ -17,7 +17,7 @@ mod witness;
 use rne_core::NeedVector;
 use scenario::{Lie, Measure};
 use serde::{Deserialize, Serialize};
-use teaming::{Evidence, Member, Rating, RoundOutcome};
+use teaming::{Evidence, Member, RoundOutcome};
 
 pub use channel::{Channel, Ends, Link};
 pub use heard::{Heard, named};
@@ -25,13 +25,12 @@ pub use known::known;
 pub use speech::in_turn;
 
 use crate::belief::KnownRobot;
-use crate::event::{Event, EventLog};
+use crate::event::EventLog;
 use crate::ids::RobotId;
 use crate::model::{Model, TelemetryModel};
-use channel::Sending;
-use heard::{Report, Trip};
+use crate::report::{Message, Statement};
+use heard::Trip;
 use lie::{Told, said_of_mate};
-use radio::ForMate;
 use witness::Witnesses;
 
 /// The state of the telemetry.
@@ -41,8 +40,6 @@ pub struct Telemetry {
     heard: Heard,
     /// Messages under way, in the order in which they were sent.
     under_way: Vec<Message>,
-    /// What robots told their group-mates and these have not heard yet, in the order in which it was sent.
-    for_mates: Vec<ForMate>,
     /// The channel.
     channel: Channel,
     /// The lies that each robot tells.
@@ -55,22 +52,6 @@ pub struct Telemetry {
     trips: Vec<Trip>,
     /// Whether each robot is to take a new name when it is home.
     takes_new_name: Vec<bool>,
-}
-
-/// A message under way.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Message {
-    heard_s: f64,
-    by: RobotId,
-    sent_s: f64,
-    by_radio: bool,
-    says: Says,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-enum Says {
-    Levels(Report),
-    Rating(Rating),
 }
 
 /// Where a robot is in the mission.
@@ -114,7 +95,6 @@ impl Telemetry {
         Some(Box::new(Self {
             heard: Heard::nothing(robots, model.mission.low_energy.threshold),
             under_way: Vec::new(),
-            for_mates: Vec::new(),
             channel: Channel::default(),
             told: rules.told_by.iter().map(told).collect(),
             read: vec![None; robots],
@@ -227,7 +207,7 @@ impl Telemetry {
                 let said = self.tells(rules, robot.id, now, Lie::is_about_mates);
                 let said = said.map_or(Some(rating), |lie| said_of_mate(&lie.lie, rating, top_mps, rules));
                 if let Some(rating) = said {
-                    self.send(Says::Rating(rating), robot, now, log);
+                    self.send_to_base(Statement::MateGoes(rating), robot, now, log);
                 }
             }
         }
@@ -286,50 +266,6 @@ impl Telemetry {
                     said.unwrap_or_else(|| now.team[mate.index()].speed_at(heard.levels(mate, mean)[1]));
                 Some([mps / there.known_loss, said])
             });
-        }
-    }
-
-    /// Sends a message. At home it is heard at once, unless the scenario says otherwise.
-    fn send(&mut self, says: Says, robot: &KnownRobot, now: &Now<'_>, log: &mut EventLog) {
-        let Some(rules) = &now.model.telemetry else { return };
-        if self.is_mute[robot.id.index()] {
-            return;
-        }
-        let by_radio = |medium: &crate::model::MediumModel| {
-            !(medium.is_perfect_at_home && (now.presence)(robot).is_home)
-        };
-        let time_s = now.time_s();
-        let medium = rules.medium.as_ref().filter(|medium| by_radio(medium));
-        let ends = Ends { from: robot.id, to: None };
-        let heard_s = medium.map_or(Some(time_s), |medium| {
-            let (at, to) = (robot.position, medium.base);
-            self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s })
-        });
-        let by_radio = medium.is_some();
-        match heard_s {
-            Some(heard_s) => {
-                self.under_way.push(Message { heard_s, by: robot.id, sent_s: time_s, by_radio, says });
-            }
-            None => log.push(Event::Lost { robot: robot.id, to: None }),
-        }
-    }
-
-    /// Lets the base hear the messages that have arrived by now.
-    fn deliver(&mut self, time_s: f64, log: &mut EventLog) {
-        let has_arrived = |message: &mut Message| message.heard_s <= time_s;
-        let mut arrived: Vec<Message> = self.under_way.extract_if(.., has_arrived).collect();
-        arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
-        for Message { heard_s, by, sent_s, by_radio, says } in arrived {
-            if by_radio {
-                self.channel.note_heard(Ends { from: by, to: None }, heard_s - sent_s);
-            }
-            if heard_s > sent_s {
-                log.push(Event::Heard { robot: by, to: None, sent_s });
-            }
-            match says {
-                Says::Levels(report) => self.heard.hear_levels(Report { heard_s, ..report }),
-                Says::Rating(rating) => self.heard.hear_rating(rating),
-            }
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Radio between group-mates: what a robot tells them of the things that it noticed, and what it hides or
-//! makes up.
+//! Messages: what robots send to the base and to their group-mates, what they hide or make up, and when it is
+//! heard.
 
 use std::ops::Range;
 
@@ -7,7 +7,6 @@ use parry2d::math::Vector;
 use rand::RngExt;
 use scenario::Lie;
 use scenario::seed::{Purpose, stream_at};
-use serde::{Deserialize, Serialize};
 use teaming::TaskId;
 
 use super::channel::{Ends, Sending};
@@ -15,60 +14,104 @@ use super::{Now, Telemetry};
 use crate::belief::KnownRobot;
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
-use crate::model::Model;
-use crate::report::{Report, Speaker, Statement};
-
-/// A report for a group-mate that is under way.
-#[derive(Clone, Serialize, Deserialize)]
-pub struct ForMate {
-    heard_s: f64,
-    sent_s: f64,
-    from: RobotId,
-    /// Who is to hear it.
-    pub to: RobotId,
-    /// The report.
-    pub report: Report,
-}
+use crate::model::{MediumModel, Model};
+use crate::report::{Message, Report, Speaker, Statement};
 
 impl Telemetry {
+    /// Sends what a robot says to the base. At home it is heard at once, unless the scenario says otherwise.
+    pub(super) fn send_to_base(
+        &mut self,
+        says: Statement,
+        robot: &KnownRobot,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) {
+        let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
+        self.send(report, robot, None, now, log);
+    }
+
     /// A robot tells its group-mates what it noticed, unless it hides it.
     pub fn tell_mates(&mut self, report: &Report, mates: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
         let (Speaker::Robot(from), Some(rules)) = (report.from, &now.model.telemetry) else { return };
-        let Some(medium) = rules.medium.as_ref().filter(|_| !self.is_mute[from.index()]) else { return };
         let is_hidden = matches!(report.says, Statement::ZoneIs { on: true, .. })
             && self.tells(rules, from, now, |lie| matches!(lie, Lie::HideRadiation)).is_some();
-        if is_hidden {
+        if is_hidden || rules.medium.is_none() {
             return;
         }
-        let (at, time_s) = (now.team[from.index()].position, now.time_s());
-        for to in mates.iter().copied().filter(|to| *to != from && now.team[to.index()].is_able()) {
-            let ends = Ends { from, to: Some(to) };
-            let there = now.team[to.index()].position;
-            let sending = Sending { seed: rules.seed, ends, at, to: there, time_s };
-            match self.channel.send(medium, sending).filter(|_| !self.is_mute[to.index()]) {
-                Some(heard_s) => {
-                    let report = report.clone();
-                    self.for_mates.push(ForMate { heard_s, sent_s: time_s, from, to, report });
-                }
-                None => log.push(Event::Lost { robot: from, to: Some(to) }),
-            }
+        let mates = mates.iter().filter(|mate| **mate != from).map(|mate| &now.team[mate.index()]);
+        for mate in mates.filter(|mate| mate.is_able()) {
+            self.send(report.clone(), &now.team[from.index()], Some(mate), now, log);
         }
     }
 
-    /// The reports that group-mates hear by now, in the order in which they arrive.
-    pub fn heard_by_mates(&mut self, time_s: f64, log: &mut EventLog) -> Vec<ForMate> {
-        let has_arrived = |told: &mut ForMate| told.heard_s <= time_s;
-        let mut arrived: Vec<ForMate> = self.for_mates.extract_if(.., has_arrived).collect();
-        arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
-        for ForMate { from, to, sent_s, heard_s, .. } in &arrived {
-            self.channel.note_heard(Ends { from: *from, to: Some(*to) }, heard_s - sent_s);
+    /// Sends a report to a mate, or to the base: over the medium, if there is one between them.
+    fn send(
+        &mut self,
+        report: Report,
+        sender: &KnownRobot,
+        to: Option<&KnownRobot>,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) {
+        let Some(rules) = &now.model.telemetry else { return };
+        let is_mute = |robot: &KnownRobot| self.is_mute[robot.id.index()];
+        if is_mute(sender) {
+            return;
         }
-        let late = arrived.iter().filter(|told| told.heard_s > told.sent_s);
-        log.extend(late.map(|told| Event::Heard {
-            robot: told.from,
-            to: Some(told.to),
-            sent_s: told.sent_s,
-        }));
+        let is_deaf = to.is_some_and(is_mute);
+        let is_between = |medium: &&MediumModel| {
+            to.is_some() || !medium.is_perfect_at_home || !(now.presence)(sender).is_home
+        };
+        let medium = rules.medium.as_ref().filter(is_between);
+        let ends = Ends { from: sender.id, to: to.map(|mate| mate.id) };
+        let (at, time_s) = (sender.position, now.time_s());
+        let heard_s = medium.map_or(Some(time_s), |medium| {
+            let to = to.map_or(medium.base, |mate| mate.position);
+            self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s })
+        });
+        match heard_s.filter(|_| !is_deaf) {
+            Some(heard_s) => self.under_way.push(Message {
+                sender: sender.id,
+                to: ends.to,
+                sent_s: time_s,
+                heard_s,
+                by_radio: medium.is_some(),
+                report,
+            }),
+            None => log.push(Event::Lost { robot: sender.id, to: ends.to }),
+        }
+    }
+
+    /// The messages that mates hear by now, in the order in which they arrive.
+    pub fn heard_by_mates(&mut self, time_s: f64, log: &mut EventLog) -> Vec<Message> {
+        self.arrived(|message| message.to.is_some(), time_s, log)
+    }
+
+    /// Lets the base hear the messages that have arrived by now.
+    pub(super) fn deliver(&mut self, time_s: f64, log: &mut EventLog) {
+        for message in self.arrived(|message| message.to.is_none(), time_s, log) {
+            self.heard.hear(message);
+        }
+    }
+
+    /// Takes the messages that these hearers hear by now, in the order in which they arrive.
+    fn arrived(
+        &mut self,
+        is_theirs: impl Fn(&Message) -> bool,
+        time_s: f64,
+        log: &mut EventLog,
+    ) -> Vec<Message> {
+        let has_arrived = |message: &mut Message| message.heard_s <= time_s && is_theirs(message);
+        let mut arrived: Vec<Message> = self.under_way.extract_if(.., has_arrived).collect();
+        arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
+        for Message { sender, to, sent_s, heard_s, by_radio, .. } in &arrived {
+            if *by_radio {
+                self.channel.note_heard(Ends { from: *sender, to: *to }, heard_s - sent_s);
+            }
+            if heard_s > sent_s {
+                log.push(Event::Heard { robot: *sender, to: *to, sent_s: *sent_s });
+            }
+        }
         arrived
     }
 

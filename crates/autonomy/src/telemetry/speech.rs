@@ -8,13 +8,13 @@ use scenario::seed::{Purpose, stream_at};
 use teaming::NeedId;
 
 use super::gauge::{Reading, read};
-use super::heard::Report;
 use super::lie::Topic;
-use super::{Now, Says, Telemetry};
+use super::{Now, Telemetry};
 use crate::belief::KnownRobot;
 use crate::event::EventLog;
 use crate::ids::RobotId;
 use crate::model::{LieModel, TelemetryModel};
+use crate::report::{Levels, Statement};
 
 /// Levels and needs of one robot have numbers of their own in streams of random numbers.
 const TOPICS: u64 = 128;
@@ -52,21 +52,21 @@ impl Telemetry {
     ) {
         let Some(rules) = &now.model.telemetry else { return };
         let robots = in_turn(robots, now);
-        let reports: Vec<Report> = robots.iter().map(|robot| self.report(robot, rules, now)).collect();
+        let reports: Vec<Levels> = robots.iter().map(|robot| self.levels_said(robot, rules, now)).collect();
         for (robot, report) in robots.iter().zip(&reports) {
-            self.send(Says::Levels(report.clone()), robot, now, log);
+            self.send_to_base(Statement::LevelsAre(report.clone()), robot, now, log);
         }
         for (robot, report) in robots.into_iter().zip(reports) {
             let other = self.tells(rules, robot.id, now, |lie| matches!(lie, Lie::Impersonate { .. }));
             if let Some(Lie::Impersonate { name }) = other.map(|lie| &lie.lie) {
-                let false_one = Report { of: *name, by: *name, ..report };
-                self.send(Says::Levels(false_one), robot, now, log);
+                let false_one = Levels { of: *name, by: *name, ..report };
+                self.send_to_base(Statement::LevelsAre(false_one), robot, now, log);
             }
         }
     }
 
     /// What a robot says of how it is, by its gauges and its lies.
-    fn report(&mut self, robot: &KnownRobot, rules: &TelemetryModel, now: &Now<'_>) -> Report {
+    fn levels_said(&mut self, robot: &KnownRobot, rules: &TelemetryModel, now: &Now<'_>) -> Levels {
         let id = robot.id;
         let gauges = &rules.gauges[robot.role.index()];
         let last = self.read[id.index()];
@@ -79,7 +79,7 @@ impl Telemetry {
         let read = [reading(0, robot.energy), reading(1, robot.hp)];
         self.read[id.index()] = Some(read);
         let (levels, needs) = self.said(robot, read, now);
-        Report {
+        Levels {
             of: id.0,
             by: id.0,
             round: now.round,
