@@ -199,8 +199,7 @@ fn commands_on_the_pages_have_the_options_of_the_program() {
 
 /// Verdicts on seeds that an earlier run had used, from before the ledger or of one study: starts of both
 /// names.
-const KNOWN_OVERLAPS: [(&str, &str, &str); 7] = [
-    ("paper-500001", "paper-search", "another world, whose search had reserved them"),
+const KNOWN_OVERLAPS: [(&str, &str, &str); 6] = [
     ("rivals", "rivals", "nine worlds of one study"),
     ("trust-fresh", "trust-fresh", "seven worlds of one study"),
     ("trust-helped", "trust-fresh", "another policy, and its page says so"),

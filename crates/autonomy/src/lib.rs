@@ -1,7 +1,7 @@
 //! What robots and their base know and decide: the half of the simulator that cannot see the world.
 //!
-//! A [`model::Model`] is what is fixed. [Reports](report::Report) come from sensors, a [belief](belief::Belief)
-//! is a fold over those that were heard, and the [mission](mission::Mission), the
+//! A [`model::Model`] is what is fixed. [Reports](report::Report) come from sensors, a
+//! [belief](belief::Belief) is a fold over those that were heard, and the [mission](mission::Mission), the
 //! [routes](navigation::Navigator) and the [right of way](conflict) go by beliefs. What comes of it are
 //! [intents](intent::Intent) and velocities; the world above this crate carries them out or refuses them.
 //!

@@ -130,8 +130,8 @@ impl Telemetry {
         self.is_mute[robot.index()] = true;
     }
 
-    /// The part of a step: robots look at their mates, report when it is time, and are heard. `sighted_mps` is
-    /// how fast the first robot sees the second go.
+    /// The part of a step: robots look at their mates, report when it is time, and are heard. `sighted_mps`
+    /// is how fast the first robot sees the second go.
     pub fn step(
         &mut self,
         sighted_mps: impl Fn(RobotId, RobotId) -> Option<f64>,

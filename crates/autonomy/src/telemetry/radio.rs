@@ -27,7 +27,7 @@ impl Telemetry {
         log: &mut EventLog,
     ) {
         let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
-        self.send(report, robot, None, now, log);
+        self.send(report, Ends { from: robot.id, to: None }, now, log);
     }
 
     /// A robot tells its group-mates what it noticed, unless it hides it.
@@ -38,47 +38,36 @@ impl Telemetry {
         if is_hidden || rules.medium.is_none() {
             return;
         }
-        let mates = mates.iter().filter(|mate| **mate != from).map(|mate| &now.team[mate.index()]);
-        for mate in mates.filter(|mate| mate.is_able()) {
-            self.send(report.clone(), &now.team[from.index()], Some(mate), now, log);
+        let is_there = |mate: &&RobotId| **mate != from && now.team[mate.index()].is_able();
+        for mate in mates.iter().filter(is_there) {
+            self.send(report.clone(), Ends { from, to: Some(*mate) }, now, log);
         }
     }
 
     /// Sends a report to a mate, or to the base: over the medium, if there is one between them.
-    fn send(
-        &mut self,
-        report: Report,
-        sender: &KnownRobot,
-        to: Option<&KnownRobot>,
-        now: &Now<'_>,
-        log: &mut EventLog,
-    ) {
+    fn send(&mut self, report: Report, ends: Ends, now: &Now<'_>, log: &mut EventLog) {
         let Some(rules) = &now.model.telemetry else { return };
-        let is_mute = |robot: &KnownRobot| self.is_mute[robot.id.index()];
-        if is_mute(sender) {
+        let Ends { from: sender, to } = ends;
+        if self.is_mute[sender.index()] {
             return;
         }
-        let is_deaf = to.is_some_and(is_mute);
+        let robot = &now.team[sender.index()];
         let is_between = |medium: &&MediumModel| {
-            to.is_some() || !medium.is_perfect_at_home || !(now.presence)(sender).is_home
+            to.is_some() || !medium.is_perfect_at_home || !(now.presence)(robot).is_home
         };
         let medium = rules.medium.as_ref().filter(is_between);
-        let ends = Ends { from: sender.id, to: to.map(|mate| mate.id) };
-        let (at, time_s) = (sender.position, now.time_s());
+        let (at, time_s) = (robot.position, now.time_s());
         let heard_s = medium.map_or(Some(time_s), |medium| {
-            let to = to.map_or(medium.base, |mate| mate.position);
+            let to = to.map_or(medium.base, |mate| now.team[mate.index()].position);
             self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s })
         });
+        let is_deaf = to.is_some_and(|mate| self.is_mute[mate.index()]);
         match heard_s.filter(|_| !is_deaf) {
-            Some(heard_s) => self.under_way.push(Message {
-                sender: sender.id,
-                to: ends.to,
-                sent_s: time_s,
-                heard_s,
-                by_radio: medium.is_some(),
-                report,
-            }),
-            None => log.push(Event::Lost { robot: sender.id, to: ends.to }),
+            Some(heard_s) => {
+                let (sent_s, by_radio) = (time_s, medium.is_some());
+                self.under_way.push(Message { sender, to, sent_s, heard_s, by_radio, report });
+            }
+            None => log.push(Event::Lost { robot: sender, to }),
         }
     }
 
