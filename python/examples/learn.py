@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import csv
 import json
-import time
 from pathlib import Path
 from typing import Any
 
@@ -84,7 +83,6 @@ def play(many: usar.env.Vector, weights: Any, seeds: list[int]) -> Any:
 
 def learn(world: str, generations: int, seed: int) -> tuple[Any, list[list[float]]]:
     """Weights, and for each generation the mean of all that were drawn, and of the elite."""
-    begun = time.monotonic()
     many = usar.env.vector(usar.Scenario.builtin(world), DRAWN * SEEDS)
     size = 2 + sum(name.startswith("robot_0_need_") for name in many.feature_names)
     draws = numpy.random.default_rng(seed)
@@ -99,8 +97,7 @@ def learn(world: str, generations: int, seed: int) -> tuple[Any, list[list[float
         mean = weights[best].mean(axis=0)
         spread = 0.7 * weights[best].std(axis=0) + 0.3 * spread
         curve.append([rescued.mean(), rescued[best].mean()])
-        gone = time.monotonic() - begun
-        print(f"{gone:4.0f} s: {rescued.mean():.1f} rescued, the best four {rescued[best].mean():.1f}", flush=True)
+        print(f"{rescued.mean():.1f} rescued, the best four {rescued[best].mean():.1f}", flush=True)
     return mean, curve
 
 
