@@ -130,21 +130,15 @@ pub struct Asked<'a> {
     pub deadline: Deadline<'a>,
     truth: Option<Truth<'a>>,
     trial: Option<&'a dyn Any>,
-    needs: Needs,
-}
-
-/// What a driver has declared that it needs besides the question.
-#[derive(Debug, Clone, Copy, Default)]
-struct Needs {
-    truth: bool,
-    trial: bool,
+    /// Whether a driver has declared which of the two it needs.
+    is_declared: bool,
 }
 
 impl<'a> Asked<'a> {
     /// A question that is asked outside of a trial and without a deadline.
     #[must_use]
     pub fn of(question: &'a Question) -> Self {
-        Self { question, deadline: Deadline::NEVER, truth: None, trial: None, needs: Needs::default() }
+        Self { question, deadline: Deadline::NEVER, truth: None, trial: None, is_declared: false }
     }
 
     /// The same, by someone who knows how the members really are.
@@ -176,14 +170,14 @@ impl<'a> Asked<'a> {
     /// What is true, for a session of a driver that [needs the truth](Driver::needs_truth). No other gets it.
     #[must_use]
     pub fn truth(&self) -> Option<Truth<'a>> {
-        self.truth.filter(|_| self.needs.truth)
+        self.truth.filter(|_| self.is_declared)
     }
 
     /// The running trial, for a session of a driver that [needs it](Driver::needs_trial), to play it on. No
     /// other gets it.
     #[must_use]
     pub fn trial(&self) -> Option<&'a dyn Any> {
-        self.trial.filter(|_| self.needs.trial)
+        self.trial.filter(|_| self.is_declared)
     }
 }
 
@@ -254,14 +248,15 @@ impl<S: Session + ?Sized> Session for &mut S {
 /// A session that gets of the truth and of the trial what its driver has declared.
 pub(crate) struct Declared {
     it: Box<dyn Session>,
-    needs: Needs,
+    needs_truth: bool,
+    needs_trial: bool,
 }
 
 impl Declared {
     /// Opens a session of a driver.
     pub(crate) fn open(driver: &dyn Driver) -> Result<Self, PolicyError> {
-        let needs = Needs { truth: driver.needs_truth(), trial: driver.needs_trial() };
-        Ok(Self { it: driver.open()?, needs })
+        let (needs_truth, needs_trial) = (driver.needs_truth(), driver.needs_trial());
+        Ok(Self { it: driver.open()?, needs_truth, needs_trial })
     }
 }
 
@@ -271,7 +266,9 @@ impl Session for Declared {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        self.it.decide(&Asked { needs: self.needs, ..*asked })
+        let truth = asked.truth.filter(|_| self.needs_truth);
+        let trial = asked.trial.filter(|_| self.needs_trial);
+        self.it.decide(&Asked { truth, trial, is_declared: true, ..*asked })
     }
 }
 
