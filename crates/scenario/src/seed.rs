@@ -43,7 +43,8 @@ pub enum Purpose {
     Trial = 15,
 }
 
-/// The number by which sessions know a trial. Its seed, from which the truth follows, does not follow from it.
+/// The number by which sessions know a trial. Its seed, from which the truth follows, does not follow from
+/// it.
 pub fn trial_number(trial_seed: u64) -> u64 {
     stream(trial_seed, Purpose::Trial, 0).next_u64()
 }
