@@ -78,7 +78,8 @@ struct Raise {
 }
 
 impl Raised {
-    /// Raises it as the cause of a `PolicyError`, in the trial of one of these seeds; goes on if there is none.
+    /// Raises it as the cause of a `PolicyError`, in the trial of one of these seeds; goes on if there is
+    /// none.
     pub fn check(&self, py: Python<'_>, seeds: impl IntoIterator<Item = u64>) -> PyResult<()> {
         let taken = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
         let Some(Raise { error, policy, trial, round }) = taken else { return Ok(()) };

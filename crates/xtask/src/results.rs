@@ -43,8 +43,8 @@ pub struct Row {
     pub date: String,
     /// Number of its bits.
     pub bits: u32,
-    /// Half of the processor's minutes that it took when it was last run as a whole: minutes of two cores that
-    /// do nothing else.
+    /// Half of the processor's minutes that it took when it was last run as a whole: minutes of two cores
+    /// that do nothing else.
     pub minutes: Option<f64>,
 }
 

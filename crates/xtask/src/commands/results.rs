@@ -73,7 +73,7 @@ fn list(rows: &[&Row]) {
 
 fn tell_cost(chosen: &[&Row]) {
     let kept: Vec<&&Row> = chosen.iter().filter(|row| !row.command.is_empty()).collect();
-    let minutes: f64 = kept.iter().filter_map(|row| row.minutes).sum();
+    let minutes: f64 = kept.iter().filter_map(|row| row.minutes).fold(0.0, |sum, minutes| sum + minutes);
     let unknown = kept.iter().filter(|row| row.minutes.is_none()).count();
     println!(
         "{} to be run: {minutes:.0} minutes of two cores, and {unknown} whose cost is not known; {} not kept",
