@@ -54,7 +54,7 @@ pub struct Delay {
 /// for at most one other, so following every chain of waits once finds every cycle. O(robots).
 ///
 /// ```
-/// use usar_sim::conflict::wait_cycles;
+/// use autonomy::conflict::wait_cycles;
 ///
 /// assert_eq!(wait_cycles(&[Some(1), Some(2), Some(1), None]), [vec![1, 2]]);
 /// ```
