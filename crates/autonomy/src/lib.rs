@@ -7,7 +7,7 @@
 //!
 //! Nothing here can name what is true: the world is in a crate above.
 //!
-//! ```compile_fail,E0432
+//! ```compile_fail,E0433
 //! use usar_sim::world::World;
 //! ```
 
