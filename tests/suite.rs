@@ -24,4 +24,5 @@ mod random_worlds;
 mod routes;
 mod scenarios;
 mod schemas;
+mod sight;
 mod telemetry;

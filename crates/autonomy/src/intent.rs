@@ -1,9 +1,27 @@
 //! Intents: what robots want to do to the world where they are, and what comes of it.
 
+use parry2d::math::Vector;
 use smallvec::SmallVec;
 
 use crate::event::Place;
 use crate::ids::{RescueeId, RobotId};
+
+/// A rescuee that a robot is after. The world goes by the place: the number is the robot's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sought {
+    /// Its number.
+    pub rescuee: RescueeId,
+    /// Where it is believed to wait.
+    pub at: Vector,
+    /// Standard deviation of that place, in metres.
+    pub sd_m: f32,
+}
+
+/// How far from each other two places may be to be those of one thing, in metres, when each is known with
+/// this standard deviation.
+pub fn gate_m(sd_m: [f32; 2]) -> f32 {
+    3.0 * (sd_m[0] * sd_m[0] + sd_m[1] * sd_m[1]).sqrt() + 0.3
+}
 
 /// What a robot wants to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,14 +29,14 @@ pub enum Intent {
     /// To begin to load a rescuee, for a resource of `resource_of`.
     BeginLoading {
         /// The rescuee.
-        rescuee: RescueeId,
+        sought: Sought,
         /// The robot itself, or a team-mate.
         resource_of: RobotId,
     },
     /// To take the rescuee on board that it was loading.
     Load {
         /// The rescuee.
-        rescuee: RescueeId,
+        sought: Sought,
         /// The robot itself, or a team-mate.
         resource_of: RobotId,
     },
@@ -41,6 +59,8 @@ pub enum Outcome {
     LoadingBegan(RescueeId),
     /// The rescuee is on board.
     Loaded {
+        /// The number under which the robot was after it.
+        sought: RescueeId,
         /// The rescuee.
         rescuee: RescueeId,
         /// The robot whose resource was used.
@@ -48,6 +68,8 @@ pub enum Outcome {
     },
     /// The rescuee does not wait within reach.
     NotThere(RescueeId),
+    /// Another robot is loading the rescuee.
+    Taken(RescueeId),
     /// There is no resource for the rescuee.
     NoResource(RescueeId),
     /// The robot has no room left.

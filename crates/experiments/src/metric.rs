@@ -126,6 +126,10 @@ const OF_REPORTS: &[Declaration] = &[
     whole("trust_auc", "", belief::trust_auc).higher()
         .means("How often an honest robot has more trust than a liar, ties by half; empty without an \
             estimator, liars or honest robots."),
+    whole("doubles", "", |r| Some(f64::from(r.finds.doubles))).lower()
+        .means("Times a robot came for a rescuee that another had taken or was loading."),
+    whole("ghosts_visited", "", |r| Some(f64::from(r.finds.ghosts_visited))).lower()
+        .means("Times a robot came for a rescuee where nobody ever was."),
     whole("trust_brier", "", belief::trust_brier).lower().means("The Brier score of trust as the probability \
         that a robot is honest; empty without an estimator."),
     whole("trust_log", "nats", belief::trust_log).lower().means("The logarithmic score of the same."),
@@ -335,9 +339,9 @@ impl Deref for Catalogue {
 
 impl Catalogue {
     /// All metrics of a scenario: of its tasks, in its words; those of reports where the base
-    /// goes by reports.
+    /// goes by reports, or robots see rescuees with errors.
     pub fn of(scenario: &Scenario) -> Self {
-        Self::of_cases(scenario, scenario.goes_by_reports())
+        Self::of_cases(scenario, scenario.goes_by_reports() || scenario.has_sight_errors())
     }
 
     /// The same for a sweep over a scenario, in any case of which the base may go by reports.

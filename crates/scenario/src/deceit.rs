@@ -130,6 +130,13 @@ pub enum Lie {
     },
     /// Does not tell its group-mates of radiation that it noticed.
     HideRadiation,
+    /// Does not tell its group-mates of robots that it saw stopped for good.
+    HideMate,
+    /// Tells its group-mates wrong places: of debris and rescuees that it noticed, and of itself.
+    Misplace {
+        /// How far they are off, in metres. The direction is drawn for each thing.
+        by_m: f64,
+    },
     /// Tells its group-mates of a rescuee that does not exist, somewhere among those of their task, again and
     /// again.
     PhantomRescuee {
@@ -162,6 +169,10 @@ enum Subject {
     OtherName,
     /// What it tells its mates of radiation.
     Radiation,
+    /// What it tells its mates of wrecks.
+    Wrecks,
+    /// The places that it tells its mates.
+    Places,
     /// What it tells its mates of rescuees.
     Rescuees,
 }
@@ -179,7 +190,8 @@ impl Lie {
 
     /// Whether it is about things in the field.
     fn is_about_the_field(&self) -> bool {
-        matches!(self.subject(), Some(Subject::Radiation | Subject::Rescuees))
+        use Subject::{Places, Radiation, Rescuees, Wrecks};
+        matches!(self.subject(), Some(Radiation | Wrecks | Places | Rescuees))
     }
 
     /// What it changes, if that is no level.
@@ -200,6 +212,8 @@ impl Lie {
             Self::Whitewash { .. } => Some(Subject::Name),
             Self::Impersonate { .. } => Some(Subject::OtherName),
             Self::HideRadiation => Some(Subject::Radiation),
+            Self::HideMate => Some(Subject::Wrecks),
+            Self::Misplace { .. } => Some(Subject::Places),
             Self::PhantomRescuee { .. } => Some(Subject::Rescuees),
         }
     }
@@ -350,7 +364,9 @@ fn values(check: &mut Checker, field: &str, lie: &Lie, file: &ScenarioFile) {
         | Lie::Flip
         | Lie::Silent
         | Lie::Collude
-        | Lie::HideRadiation => {}
+        | Lie::HideRadiation
+        | Lie::HideMate
+        | Lie::Misplace { .. } => {}
     }
 }
 
@@ -377,6 +393,22 @@ fn may_be_one(a: &Who, b: &Who) -> bool {
 }
 
 impl Scenario {
+    /// Whether any robot sees rescuees where they are not, or overlooks them.
+    pub fn has_sight_errors(&self) -> bool {
+        self.roles.iter().any(|role| !role.sight.is_exact())
+    }
+
+    /// Whether robots may speak of rescuees that do not exist.
+    pub fn has_phantoms(&self) -> bool {
+        let happens = self.timeline.iter().filter_map(|moment| match &moment.event {
+            Happening::RobotLies { lie, .. } => Some(lie),
+            _ => None,
+        });
+        let mut lies = self.deceit.iter().map(|deceit| &deceit.lie).chain(happens);
+        lies.any(|lie| matches!(lie, Lie::PhantomRescuee { .. }))
+            || self.roles.iter().any(|role| role.sight.false_alarms_per_min > 0.0)
+    }
+
     /// Whether the base goes by reports: robots report, a medium carries what they say, or robots lie.
     pub fn goes_by_reports(&self) -> bool {
         let is_about_reports = |event: &Happening| {

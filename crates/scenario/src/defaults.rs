@@ -10,7 +10,7 @@ use super::file::{
     MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile,
     RoleKind, RoundEnd, TurnBack,
 };
-use crate::{Rates, WorkRates};
+use crate::{Rates, Sight, WorkRates};
 
 /// The format of a file that names none: the one that this program reads.
 pub(super) fn format() -> u32 {
@@ -60,6 +60,7 @@ impl Default for RoleFile {
             acceleration_mps2: 4.0,
             sensing_m: 3.0,
             observing_m: 3.0,
+            sight: Sight::default(),
             capacity: 6,
             resources: 1,
             guides: false,

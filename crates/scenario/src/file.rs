@@ -213,6 +213,9 @@ pub struct RoleFile {
     pub sensing_m: f64,
     /// Range within which rescuees are seen, in metres.
     pub observing_m: f64,
+    /// What it sees wrong of rescuees. Without this, it sees all within range where they are.
+    #[serde(skip_serializing_if = "Sight::is_exact")]
+    pub sight: Sight,
     /// Rescuees that it can have on board.
     pub capacity: u32,
     /// Rescuing resources that it takes along each round.
@@ -222,6 +225,27 @@ pub struct RoleFile {
     pub guides: bool,
     /// Values of the needs that measure a constant of the role, by the name of the need.
     pub constants: BTreeMap<String, f64>,
+}
+
+/// Errors of the sight of rescuees.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sight {
+    /// Standard deviation of each coordinate of a rescuee's place, in metres, at the end of the observing
+    /// range; nearer by, in proportion less. The error of a robot's sight of a rescuee is drawn anew every
+    /// 10 s.
+    pub noise_m: f64,
+    /// Probability that a robot overlooks a rescuee; drawn anew every 10 s.
+    pub miss: f64,
+    /// Rescuees a minute that a robot sees in the area of its task and that do not exist, on average.
+    pub false_alarms_per_min: f64,
+}
+
+impl Sight {
+    /// Whether it has no errors.
+    pub fn is_exact(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// Where robots of a role move.

@@ -44,6 +44,10 @@ ron_tree::limits! {
     SENSING_M: "roles.*.sensing_m" = 0, 1_000;
     /// Range within which rescuees are seen, in metres.
     OBSERVING_M: "roles.*.observing_m" = 0, 1_000;
+    /// Standard deviation of the place at which a rescuee is seen, in metres.
+    SIGHT_NOISE_M: "roles.*.sight.noise_m" = 0, 100;
+    /// Rescuees that a robot sees in a minute and that do not exist.
+    FALSE_ALARMS: "roles.*.sight.false_alarms_per_min" = 0, 60;
     /// Rescuees on board.
     CAPACITY: "roles.*.capacity" = 0, 10_000;
     /// Resources of a robot.
@@ -171,6 +175,10 @@ ron_tree::limits! {
     RADIO_RANGE_M: "medium.range_m" = 0.1, 10_000;
     /// Delay of a message, in seconds.
     DELAY_S: "medium.delay_s" = 0, 3_600;
+    /// How often a lost message is sent again.
+    RESENDS: "medium.resend.times" = 0, 100;
+    /// What a message costs its sender.
+    MESSAGE_ENERGY: "medium.energy_per_message" = 0, 1e6;
     /// Capacity of a channel, in kilobits a second.
     KBPS: "medium.kbps" = 0.01, 1e6;
     /// Length of a message, in bytes.

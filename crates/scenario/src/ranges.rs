@@ -11,7 +11,7 @@ use crate::limits;
 
 /// Limits that apply at further paths. In a path of the schema and of a file, the name of a variant may be
 /// left out.
-const MORE: [(&str, Limit); 24] = [
+const MORE: [(&str, Limit); 27] = [
     ("team[*].count", Limit { least: 0.0, ..limits::ROBOTS }),
     ("timeline[*].event.RobotLoses.hp", limits::LOSS),
     ("timeline[*].event.RescueesAppear.grid[*]", limits::GRID),
@@ -21,7 +21,9 @@ const MORE: [(&str, Limit); 24] = [
     ("tasks.*.requires", Limit { least: 0.0, ..limits::NEEDS }),
     ("tasks.*.quota", Limit { least: 0.0, ..limits::ROLES }),
     ("tasks.*.after", Limit { least: 0.0, ..limits::TASKS }),
+    ("roles.*.sight.miss", limits::PROBABILITY),
     ("medium.loss.GilbertElliott.*", limits::PROBABILITY),
+    ("medium.resend.after_s", limits::DELAY_S),
     ("medium.blackouts[*].from_s", limits::AT_S),
     ("medium.blackouts[*].to_s", limits::AT_S),
     ("deceit[*].since_s", limits::AT_S),
@@ -34,6 +36,7 @@ const MORE: [(&str, Limit); 24] = [
     ("deceit[*].lie.Uniform.high", limits::SAID_LEVEL),
     ("deceit[*].lie.OnOff.duty", limits::PROBABILITY),
     ("deceit[*].lie.PhantomRescuee.every_s", limits::LIE_PERIOD_S),
+    ("deceit[*].lie.Misplace.by_m", limits::SIGHT_NOISE_M),
     ("scatter[*].movable.mass_kg", limits::PIECE_MASS_KG),
     ("scatter[*].movable.friction", limits::FRICTION),
 ];

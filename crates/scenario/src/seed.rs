@@ -41,6 +41,12 @@ pub enum Purpose {
     Turn = 14,
     /// The number by which sessions know the trial.
     Trial = 15,
+    /// How a robot sees a rescuee for a while.
+    Sight = 16,
+    /// A rescuee that a robot sees and that does not exist, at a step.
+    FalseAlarm = 17,
+    /// The direction in which a robot misplaces a thing.
+    Misplace = 18,
 }
 
 /// The number by which sessions know a trial. Its seed, from which the truth follows, does not follow from

@@ -117,6 +117,40 @@ pub struct MediumRules {
     pub blackouts: Vec<Blackout>,
     /// How robots at home are heard.
     pub at_home: AtHome,
+    /// Whether a lost message is sent again.
+    #[serde(skip_serializing_if = "Resend::is_never")]
+    pub resend: Resend,
+    /// What each message costs its sender, in the unit of the scenario's costs of energy. One that is sent
+    /// again costs it again.
+    #[serde(skip_serializing_if = "is_nothing")]
+    pub energy_per_message: f64,
+}
+
+/// What a sender does about a lost message. It knows at once that the message is lost.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Resend {
+    /// How often it sends the message again, at most. 0 is best effort.
+    pub times: u32,
+    /// Time between two sendings, in seconds.
+    pub after_s: f64,
+}
+
+impl Default for Resend {
+    fn default() -> Self {
+        Self { times: 0, after_s: 0.5 }
+    }
+}
+
+impl Resend {
+    fn is_never(&self) -> bool {
+        self.times == 0
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a field by reference")]
+fn is_nothing(cost: &f64) -> bool {
+    *cost == 0.0
 }
 
 impl Default for MediumRules {
@@ -131,6 +165,8 @@ impl Default for MediumRules {
             path: None,
             blackouts: Vec::new(),
             at_home: AtHome::Perfect,
+            resend: Resend::default(),
+            energy_per_message: 0.0,
         }
     }
 }

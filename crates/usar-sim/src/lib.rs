@@ -34,7 +34,7 @@ pub const BITS: u32 = 12;
 
 /// Number of the way in which the state is hashed. Whoever changes hashes and nothing that comes out of a
 /// trial raises it instead.
-pub const HASH_FORMAT: u32 = 2;
+pub const HASH_FORMAT: u32 = 3;
 
 pub use autonomy::{
     belief, conflict, event, executor, hash, ids, intent, mission, model, navigation, planning, report,

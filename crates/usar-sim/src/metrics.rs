@@ -72,6 +72,15 @@ pub struct Counts {
     pub unreachable: u32,
 }
 
+/// How often robots came to a place for a rescuee in vain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Finds {
+    /// Another robot had taken the rescuee, or was loading it: it was known twice, or no longer waited.
+    pub doubles: u32,
+    /// Nobody ever was there.
+    pub ghosts_visited: u32,
+}
+
 /// A robot that did not get home or to rest, so that the team did not wait for it, or to the place of an
 /// errand.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -103,6 +112,8 @@ pub struct Metrics {
     pub delivered_s: Vec<f64>,
     /// How often things happened.
     pub counts: Counts,
+    /// How often robots came for rescuees in vain.
+    pub finds: Finds,
     /// Robots that were cut off, in the order in which each was cut off first.
     pub cut_off: Vec<CutOff>,
     /// Totals of each robot, by id.

@@ -6,7 +6,7 @@ use teaming::{Decision, Evidence, Extent, Member, Question, RoundOutcome};
 use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
-use crate::metrics::{Counts, CutOff, RoundRecord, TaskTotals};
+use crate::metrics::{Counts, Finds, CutOff, RoundRecord, TaskTotals};
 use crate::model::{Liar, Model, TelemetryModel};
 use crate::robot::Condition;
 use crate::tally::Tally;
@@ -234,6 +234,9 @@ pub struct TrialRecord {
     pub robots: Vec<RobotRecord>,
     /// How often things happened.
     pub counts: Counts,
+    /// How often robots came for rescuees in vain.
+    #[serde(default)]
+    pub finds: Finds,
     /// Robots that stood at the end: they could act, had something to do, and did not get there.
     #[serde(default)]
     pub stalled: u32,

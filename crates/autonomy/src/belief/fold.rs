@@ -13,6 +13,7 @@ use super::news::{News, Opening, Seen};
 use super::table::Table;
 use crate::hash::part;
 use crate::ids::RescueeId;
+use crate::intent::gate_m;
 use crate::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap};
 use crate::report::{Report, Statement};
 
@@ -90,6 +91,17 @@ impl Belief {
         &waiting[from..to]
     }
 
+    /// The rescuee that is held to wait nearest to a place, as near as may be one and the same. Where both
+    /// places are exact, numbers alone tell rescuees apart.
+    pub fn rescuee_near(&self, at: Vector, sd_m: f32) -> Option<(RescueeId, &KnownRescuee)> {
+        let near = self.maps.waiting.iter().filter_map(|(id, waits_at)| {
+            let known = self.rescuees.get(id.index())?;
+            let (apart, is_exact) = ((*waits_at - at).length(), sd_m == 0.0 && known.sd_m == 0.0);
+            (!is_exact && apart <= gate_m([sd_m, known.sd_m])).then_some((apart, *id, known))
+        });
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id, known)| (id, known))
+    }
+
     /// Number of rescuees that are believed to wait in a task with these rescuees: as many as were said to,
     /// without those that were reported gone since. None if nobody said.
     pub fn waiting(&self, task: TaskId, rescuees: Range<usize>) -> Option<u32> {
@@ -127,6 +139,16 @@ impl Belief {
             }
             Statement::RescueeWaits { rescuee, at } => {
                 let known = KnownRescuee { waits_at: Some(*at), at_step, sd_m };
+                let near = self.rescuee_near(*at, sd_m).map(|(number, near)| (number.index(), near.sd_m));
+                match near {
+                    Some((_, near_m)) if near_m <= sd_m => return false,
+                    Some((number, _)) if sd_m > 0.0 => return self.hear_of_rescuee(number, known),
+                    // An exact sight has the true number.
+                    Some((number, _)) => {
+                        self.hear_of_rescuee(number, KnownRescuee { waits_at: None, ..known });
+                    }
+                    None => {}
+                }
                 self.hear_of_rescuee(rescuee.index(), known)
             }
             Statement::RescueeIsGone { rescuee } => {

@@ -68,6 +68,35 @@ fn a_rescuee_waits_until_a_later_report_says_that_it_is_gone() {
     assert_eq!(belief.rescuees.get(2).unwrap().waits_at, None);
 }
 
+fn waits(number: u32, x: f32, sd_m: f32, at_step: u64) -> Report {
+    let at = Vector::new(x, 0.0);
+    Report { sd_m, ..says(Statement::RescueeWaits { rescuee: RescueeId(number), at }, at_step) }
+}
+
+#[test]
+fn exact_reports_give_one_order_in_whatever_order_things_are_found() {
+    let found = |order: &[u32]| {
+        let mut belief = belief();
+        order.iter().for_each(|number| assert!(belief.hear(&waits(*number, 0.1 * *number as f32, 0.0, 1))));
+        belief.waiting_among(&(0..9)).to_vec()
+    };
+    assert_eq!(found(&[0, 1, 2, 3, 4]), found(&[4, 3, 2, 1, 0]));
+}
+
+#[test]
+fn sightings_within_the_gate_are_one_rescuee_and_the_best_of_them_counts() {
+    let mut belief = belief();
+    assert!(belief.hear(&waits(20, 10.0, 1.0, 1)));
+    assert!(!belief.hear(&waits(30, 11.0, 1.0, 2)), "the same, seen no better");
+    assert!(belief.hear(&waits(30, 11.0, 0.5, 3)), "the same, seen better");
+    assert_eq!(belief.waiting_among(&(0..99)), [(RescueeId(20), Vector::new(11.0, 0.0))]);
+    assert!(belief.hear(&waits(30, 14.0, 0.5, 4)), "3.0 m apart; the gate is 3 sd + 0.3 m = 2.4 m");
+    assert_eq!(belief.waiting_among(&(0..99)).len(), 2);
+    assert!(belief.hear(&waits(5, 11.2, 0.0, 5)), "an exact sight has the true number");
+    let numbers: Vec<u32> = belief.waiting_among(&(0..99)).iter().map(|(id, _)| id.0).collect();
+    assert_eq!(numbers, [5, 30]);
+}
+
 #[test]
 fn pooled_beliefs_hold_the_newest_of_each_and_survive_a_snapshot() {
     let inflation = Inflation { radii: vec![0.4, 0.8], clearance: 0.15 };

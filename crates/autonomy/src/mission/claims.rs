@@ -117,7 +117,7 @@ impl Claims {
         if offers.is_empty() {
             return;
         }
-        let place = |id: RobotId| scene.beliefs.team[id.index()].position;
+        let place = |id: RobotId| scene.place_said(id);
         let mut seekers: SmallVec<[Seeker; 16]> =
             seeking.into_iter().map(|id| Seeker::new(id, place(id), holder(id), &offers)).collect();
         for _ in 0..spare {
@@ -141,10 +141,9 @@ impl Claims {
         scene: &'s Scene,
     ) -> impl Iterator<Item = Offer> + use<'s> {
         let belief = scene.beliefs.of(Some(holder));
-        let own = belief.waiting_among(&scene.model.tasks[task.index()].rescuees);
-        let phantoms = belief.waiting_among(&scene.model.phantoms_of(task));
+        let names = scene.model.names_of(task).map(|names| belief.waiting_among(&names));
         let is_free = |id: &RescueeId| self.by[id.index()].is_none() && !self.given_up[id.index()];
         let offer = move |(rescuee, at): &(RescueeId, Vector)| Offer { holder, rescuee: *rescuee, at: *at };
-        own.iter().chain(phantoms).filter(move |(id, _)| is_free(id)).map(offer)
+        names.into_iter().flatten().filter(move |(id, _)| is_free(id)).map(offer)
     }
 }

@@ -4,11 +4,11 @@ use parry2d::math::Vector;
 use teaming::TaskId;
 
 use super::GIVE_UP_S;
-use crate::belief::KnownRobot;
-use crate::belief::{Beliefs, Holder};
+use crate::belief::{Beliefs, Holder, KnownRescuee, KnownRobot};
 use crate::conflict::Directive;
 use crate::event::EventLog;
 use crate::ids::{RescueeId, RobotId};
+use crate::intent::Sought;
 use crate::model::Model;
 use crate::navigation::{Goal, Navigator};
 use crate::report::Report;
@@ -41,8 +41,25 @@ pub struct Scene<'s> {
 impl Scene<'_> {
     /// Where a rescuee waits, as a robot in the group of a task believes.
     pub(super) fn place_of(&self, robot: RobotId, task: TaskId, rescuee: RescueeId) -> Option<Vector> {
+        self.known_of(robot, task, rescuee)?.waits_at
+    }
+
+    /// The rescuee that a robot in the group of a task is after, as it believes.
+    pub(super) fn sought(&self, robot: RobotId, task: TaskId, rescuee: RescueeId) -> Option<Sought> {
+        let known = self.known_of(robot, task, rescuee)?;
+        Some(Sought { rescuee, at: known.waits_at?, sd_m: known.sd_m })
+    }
+
+    fn known_of(&self, robot: RobotId, task: TaskId, rescuee: RescueeId) -> Option<&KnownRescuee> {
         let holder = Holder::of(self.model.mission.belief_sharing, robot, task);
-        self.beliefs.of(Some(holder)).rescuees.get(rescuee.index())?.waits_at
+        self.beliefs.of(Some(holder)).rescuees.get(rescuee.index())
+    }
+
+    /// Where a robot is, as its mates know.
+    pub(super) fn place_said(&self, robot: RobotId) -> Vector {
+        let known = &self.beliefs.team[robot.index()];
+        let said = |telemetry: &Telemetry| telemetry.place_said(known, self.model, self.step);
+        self.telemetry.as_deref().map_or(known.position, said)
     }
 
     /// Whether a robot has known no route to its goal for so long that it gives up on the goal.

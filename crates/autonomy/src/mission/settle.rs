@@ -10,7 +10,7 @@ use super::round::{levels_after_rest, rest_steps};
 use super::{Activity, Mission, Scene};
 use crate::event::{Event, Place};
 use crate::ids::{RescueeId, RobotId};
-use crate::intent::{Intent, Outcome};
+use crate::intent::{Intent, Outcome, Sought};
 use crate::report::{Report, Speaker, Statement};
 
 /// For each task, the member that shares its resources: found on demand, and forgotten when a resource is
@@ -36,15 +36,15 @@ impl Mission {
         }
         match self.crew.agents[robot.index()].activity {
             Activity::Approaching(rescuee) => {
-                let resource_of = self.resource_for(robot, rescuee, scene, sharing)?;
-                Some(Intent::BeginLoading { rescuee, resource_of })
+                let (sought, resource_of) = self.resource_for(robot, rescuee, scene, sharing)?;
+                Some(Intent::BeginLoading { sought, resource_of })
             }
             Activity::Loading(rescuee, done) if scene.step >= done => {
                 let holder = self.resource_for(robot, rescuee, scene, sharing);
                 if holder.is_none() {
                     self.crew.agent(robot).activity = Activity::Approaching(rescuee);
                 }
-                holder.map(|resource_of| Intent::Load { rescuee, resource_of })
+                holder.map(|(sought, resource_of)| Intent::Load { sought, resource_of })
             }
             Activity::Returning if has_arrived(robot, scene) => Some(Intent::Deliver { place: Place::Home }),
             Activity::ToRest if is_at_slot(robot, scene) => {
@@ -72,9 +72,14 @@ impl Mission {
                 self.crew.agent(robot).activity = Activity::Searching;
             }
             Outcome::NotThere(rescuee) => self.go_on_without(rescuee, robot, scene),
-            Outcome::Loaded { rescuee, resource_of } => {
+            Outcome::Taken(rescuee) => {
+                self.claims.given_up[rescuee.index()] = true;
+                self.release_claim(robot);
+                self.crew.agent(robot).activity = Activity::Searching;
+            }
+            Outcome::Loaded { sought, rescuee, resource_of } => {
                 *sharing = [None; MAX_TASKS];
-                self.go_on_without(rescuee, robot, scene);
+                self.go_on_without(sought, robot, scene);
                 scene.log.push(Event::Loaded { robot, rescuee, resource_of });
             }
             Outcome::Delivered { place, rescuees } => {
@@ -122,24 +127,25 @@ impl Mission {
         (scene.step >= done).then(|| Intent::Refill { levels: levels() })
     }
 
-    /// The member whose resource a robot would use for a rescuee within its reach: the robot itself, or the
-    /// member that shares. None if the rescuee is not within reach, or no resource is left.
+    /// A rescuee within the reach of a robot, and the member whose resource it would use: the robot itself, or
+    /// the member that shares. None if the rescuee is not within reach, or no resource is left.
     fn resource_for(
         &self,
         robot: RobotId,
         rescuee: RescueeId,
         scene: &Scene,
         sharing: &mut Sharing,
-    ) -> Option<RobotId> {
+    ) -> Option<(Sought, RobotId)> {
         let task = self.crew.agents[robot.index()].task?;
-        let (place, state) = (scene.place_of(robot, task, rescuee)?, &scene.beliefs.team[robot.index()]);
-        if (place - state.position).length() > scene.model.mission.reach {
+        let (sought, state) = (scene.sought(robot, task, rescuee)?, &scene.beliefs.team[robot.index()]);
+        if (sought.at - state.position).length() > scene.model.mission.reach {
             return None;
         }
         if state.resources > 0 {
-            return Some(robot);
+            return Some((sought, robot));
         }
-        *sharing[task.index()].get_or_insert_with(|| self.crew.sharing_member(task, scene))
+        let sharing = sharing[task.index()].get_or_insert_with(|| self.crew.sharing_member(task, scene));
+        sharing.map(|member| (sought, member))
     }
 
     /// Frees the rescuee that a robot had claimed before it could no longer act.

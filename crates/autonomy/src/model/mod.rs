@@ -7,6 +7,7 @@ mod costs;
 mod debris;
 mod layout;
 mod mission;
+mod names;
 mod out_of_reach;
 mod places;
 mod rescuee;
@@ -57,6 +58,10 @@ pub struct Model {
     pub control_steps: u64,
     /// Width and height of the arena, in metres.
     pub arena: Vector,
+    /// Whether robots speak of rescuees that do not exist: liars, or such as see them by mistake.
+    pub has_phantoms: bool,
+    /// Whether any robot sees rescuees where they are not, or overlooks them.
+    pub has_sight_errors: bool,
     /// Names of the roles.
     pub roles: Vec<String>,
     /// The needs that robots report.
@@ -135,6 +140,8 @@ impl Model {
             link_steps: ((PERIOD_S / dt_s).round() as u64).max(1),
             control_steps: scenario.control_steps(),
             arena: vector(scenario.arena_m),
+            has_phantoms: scenario.has_phantoms(),
+            has_sight_errors: scenario.has_sight_errors(),
             roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
             needs: scenario.needs.iter().map(need).collect(),
             tasks: TaskModel::compile_all(scenario, &rescuees, home),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use scenario::{RoleFile, RoleKind, Scenario};
+use scenario::{RoleFile, RoleKind, Scenario, Sight};
 use teaming::{RoleId, TaskId};
 
 use super::RobotStart;
@@ -59,6 +59,8 @@ pub struct RobotSpec {
     pub sensing_m: f64,
     /// Range within which rescuees are seen, in metres.
     pub observing_m: f64,
+    /// What it sees wrong of rescuees.
+    pub sight: Sight,
     /// Rescuees that it can have on board.
     pub capacity: u32,
     /// Rescuing resources that it takes along each round.
@@ -109,6 +111,7 @@ impl RobotSpec {
             greatest_change: (body.acceleration_mps2 * scenario.dt_s) as f32,
             sensing_m: body.sensing_m,
             observing_m: body.observing_m,
+            sight: body.sight,
             capacity: body.capacity,
             resources: body.resources,
             guides: body.guides,

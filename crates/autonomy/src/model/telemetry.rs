@@ -7,8 +7,8 @@ use rand::RngExt;
 use scenario::seed::{Purpose, stream};
 use scenario::shapes::{Outline, vector};
 use scenario::{
-    AtHome, Channel, Gauge, Happening, LevelSource, Lie, Loss, Mates, MediumRules, PathLoss, Scenario, Who,
-    Witness, rounded_share,
+    AtHome, Channel, Gauge, Happening, LevelSource, Lie, Loss, Mates, MediumRules, PathLoss, Resend, Scenario,
+    Who, Witness, rounded_share,
 };
 use serde::{Deserialize, Serialize};
 use teaming::{Expected, NeedId};
@@ -41,8 +41,6 @@ pub struct TelemetryModel {
     pub told_by: Vec<Vec<usize>>,
     /// For each robot, when its first lie begins in this trial, in seconds; none for an honest robot.
     pub lies_since_s: Vec<Option<f64>>,
-    /// Whether any lie makes up rescuees.
-    pub has_phantoms: bool,
     /// What the base expects of energy and of health before the first report. A robot that was never heard
     /// counts with the means.
     pub initial: [Expected; 2],
@@ -93,6 +91,10 @@ pub struct MediumModel {
     pub air_s: f64,
     /// Whether robots at home are heard at once and always.
     pub is_perfect_at_home: bool,
+    /// Whether a lost message is sent again.
+    pub resend: Resend,
+    /// What each message costs its sender, in the unit of the scenario's costs.
+    pub energy_per_message: f64,
 }
 
 /// A disc in which nothing is sent or heard for a time.
@@ -144,9 +146,7 @@ impl TelemetryModel {
             }
         }
         let levels = scenario.initial_levels;
-        let lies = lies(scenario);
         Some(Self {
-            has_phantoms: lies.iter().any(|lie| matches!(lie.lie, Lie::PhantomRescuee { .. })),
             seed,
             every_steps: ((rules.every_s / scenario.dt_s).round() as u64).max(1),
             gauges: scenario.roles.iter().map(|role| gauges(&role.name)).collect(),
@@ -155,7 +155,7 @@ impl TelemetryModel {
             priority: rules.priority,
             clip: rules.clip,
             medium: scenario.medium.as_ref().map(|rules| MediumModel::compile(rules, layout, robots)),
-            lies,
+            lies: lies(scenario),
             told_by,
             lies_since_s,
             initial: [levels.energy, levels.hp].map(|of| Expected { mean: of.mean, sd: of.sd }),
@@ -208,6 +208,8 @@ impl MediumModel {
             delay_s: rules.delay_s,
             air_s: rules.kbps.map_or(0.0, on_air),
             is_perfect_at_home: rules.at_home == AtHome::Perfect,
+            resend: rules.resend,
+            energy_per_message: rules.energy_per_message,
         }
     }
 }

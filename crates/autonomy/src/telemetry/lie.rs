@@ -87,6 +87,8 @@ fn turned(lie: &Lie, x: f64, topic: &Topic, since_s: f64) -> Option<f64> {
         | Lie::Whitewash { .. }
         | Lie::Impersonate { .. }
         | Lie::HideRadiation
+        | Lie::HideMate
+        | Lie::Misplace { .. }
         | Lie::PhantomRescuee { .. } => return None,
     })
 }
@@ -126,6 +128,8 @@ pub fn said_of_mate(lie: &Lie, rating: Rating, top_mps: f64, rules: &TelemetryMo
         | Lie::Whitewash { .. }
         | Lie::Impersonate { .. }
         | Lie::HideRadiation
+        | Lie::HideMate
+        | Lie::Misplace { .. }
         | Lie::PhantomRescuee { .. } => rating,
     })
 }

@@ -6,6 +6,7 @@
 //! has no reports, no medium and no deceit, there is no telemetry, and the base knows how every robot is.
 
 mod channel;
+mod deceit;
 mod gauge;
 mod heard;
 mod known;
@@ -13,6 +14,8 @@ mod lie;
 mod radio;
 mod speech;
 mod witness;
+
+use std::collections::BTreeMap;
 
 use rne_core::NeedVector;
 use scenario::{Lie, Measure};
@@ -115,6 +118,11 @@ impl Telemetry {
         self.channel.links()
     }
 
+    /// How many messages each robot has sent since this was asked last, where they cost something.
+    pub fn take_unpaid(&mut self) -> BTreeMap<RobotId, u32> {
+        self.channel.take_unpaid()
+    }
+
     /// A robot begins to tell one of the lies of the timeline.
     pub fn begin_lie(&mut self, robot: RobotId, lie: usize) {
         self.told[robot.index()].push(Told::new(lie));
@@ -204,7 +212,7 @@ impl Telemetry {
         for robot in in_turn(now.team.iter().filter(|robot| robot.is_able()), now) {
             for rating in self.witnesses.ratings(rules, robot.id, now.round) {
                 let top_mps = now.team[rating.of as usize].spec.speed_mps;
-                let said = self.tells(rules, robot.id, now, Lie::is_about_mates);
+                let said = self.tells(rules, robot.id, now.time_s(), Lie::is_about_mates);
                 let said = said.map_or(Some(rating), |lie| said_of_mate(&lie.lie, rating, top_mps, rules));
                 if let Some(rating) = said {
                     self.send_to_base(Statement::MateGoes(rating), robot, now, log);

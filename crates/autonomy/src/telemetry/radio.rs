@@ -1,20 +1,17 @@
 //! Messages: what robots send to the base and to their group-mates, what they hide or make up, and when it is
 //! heard.
 
-use std::ops::Range;
-
 use parry2d::math::Vector;
 use rand::RngExt;
 use scenario::Lie;
 use scenario::seed::{Purpose, stream_at};
-use teaming::TaskId;
 
 use super::channel::{Ends, Sending};
 use super::{Now, Telemetry};
 use crate::belief::KnownRobot;
 use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
-use crate::model::{MediumModel, Model};
+use crate::model::MediumModel;
 use crate::report::{Message, Report, Speaker, Statement};
 
 impl Telemetry {
@@ -30,14 +27,10 @@ impl Telemetry {
         self.send(report, Ends { from: robot.id, to: None }, now, log);
     }
 
-    /// A robot tells its group-mates what it noticed, unless it hides it.
+    /// A robot tells its group-mates what it noticed, as far as it is honest.
     pub fn tell_mates(&mut self, report: &Report, mates: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
         let (Speaker::Robot(from), Some(rules)) = (report.from, &now.model.telemetry) else { return };
-        let is_hidden = matches!(report.says, Statement::ZoneIs { on: true, .. })
-            && self.tells(rules, from, now, |lie| matches!(lie, Lie::HideRadiation)).is_some();
-        if is_hidden || rules.medium.is_none() {
-            return;
-        }
+        let Some(report) = self.deceive(report, from, now).filter(|_| rules.medium.is_some()) else { return };
         let is_there = |mate: &&RobotId| **mate != from && now.team[mate.index()].is_able();
         for mate in mates.iter().filter(is_there) {
             self.send(report.clone(), Ends { from, to: Some(*mate) }, now, log);
@@ -112,7 +105,7 @@ impl Telemetry {
             return None;
         }
         let made_up = |lie: &Lie| matches!(lie, Lie::PhantomRescuee { .. });
-        let told = self.tells(rules, liar.id, now, made_up)?;
+        let told = self.tells(rules, liar.id, now.time_s(), made_up)?;
         let Lie::PhantomRescuee { every_s } = told.lie else { return None };
         let steps = |seconds: f64| (seconds / now.model.dt_s()).round() as u64;
         let into = now.step.saturating_sub(steps(told.window_s[0]));
@@ -123,20 +116,5 @@ impl Telemetry {
         let mut draws = stream_at(rules.seed, Purpose::Phantom, u64::from(liar.id.0), into / every);
         let [x, y] = [draws.random::<f32>(), draws.random()];
         Some(Vector::new(low.x + x * (high.x - low.x), low.y + y * (high.y - low.y)))
-    }
-}
-
-impl Model {
-    /// How many numbers robots have for rescuees: those that exist, then those that liars make up.
-    pub(crate) fn rescuee_numbers(&self) -> usize {
-        self.task_ids().last().map_or(0, |task| self.phantoms_of(task).end)
-    }
-
-    /// The numbers of the rescuees that liars make up for a task, one for each robot.
-    pub fn phantoms_of(&self, task: TaskId) -> Range<usize> {
-        let has_phantoms = self.telemetry.as_ref().is_some_and(|rules| rules.has_phantoms);
-        let robots = if has_phantoms { self.robots.len() } else { 0 };
-        let first = self.rescuees.len() + task.index() * robots;
-        first..first + robots
     }
 }

@@ -35,11 +35,11 @@ impl Telemetry {
         &self,
         rules: &'r TelemetryModel,
         by: RobotId,
-        now: &Now<'_>,
+        time_s: f64,
         is_it: impl Fn(&Lie) -> bool,
     ) -> Option<&'r LieModel> {
         let lies = self.told[by.index()].iter().map(|told| &rules.lies[told.lie as usize]);
-        lies.into_iter().find(|lie| is_it(&lie.lie) && lie.is_told_at(now.time_s()))
+        lies.into_iter().find(|lie| is_it(&lie.lie) && lie.is_told_at(time_s))
     }
 
     /// Lets robots read their gauges and say how they are. What some say under the names of others, they say
@@ -57,7 +57,7 @@ impl Telemetry {
             self.send_to_base(Statement::LevelsAre(report.clone()), robot, now, log);
         }
         for (robot, report) in robots.into_iter().zip(reports) {
-            let other = self.tells(rules, robot.id, now, |lie| matches!(lie, Lie::Impersonate { .. }));
+            let other = self.tells(rules, robot.id, now.time_s(), |lie| matches!(lie, Lie::Impersonate { .. }));
             if let Some(Lie::Impersonate { name }) = other.map(|lie| &lie.lie) {
                 let false_one = Levels { of: *name, by: *name, ..report };
                 self.send_to_base(Statement::LevelsAre(false_one), robot, now, log);

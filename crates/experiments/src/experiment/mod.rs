@@ -210,7 +210,8 @@ impl Experiment {
         };
         let ids = |case| policies.iter().enumerate().map(|policy| id(case, policy)).collect();
         let ids = cases.iter().map(ids).collect();
-        let by_reports = base.goes_by_reports() || cases.iter().any(|case| case.scenario.goes_by_reports());
+        let has_reports = |scenario: &Scenario| scenario.goes_by_reports() || scenario.has_sight_errors();
+        let by_reports = has_reports(&base) || cases.iter().any(|case| has_reports(&case.scenario));
         let metrics = Catalogue::of_cases(&base, by_reports);
         let plan = plan.checked(&metrics)?;
         let has = |label: &String| policies.iter().any(|policy| policy.label == *label);

@@ -292,6 +292,7 @@ impl Simulation {
             decisions,
             robots: robots.map(|(robot, tally)| RobotRecord::of(robot, tally, model)).collect(),
             counts: metrics.counts,
+            finds: metrics.finds,
             stalled: mission.crew.stalled(world.robots.iter().map(Deref::deref), model),
             cut_off: metrics.cut_off,
             overlaps,

@@ -3,7 +3,6 @@
 use scenario::BeliefSharing;
 
 use super::State;
-use crate::ids::RescueeId;
 use crate::model::Model;
 use crate::report::{Report, Speaker, Statement};
 use crate::telemetry::in_turn;
@@ -26,7 +25,7 @@ impl State {
 
     /// Liars tell their group-mates of rescuees that do not exist.
     pub(super) fn make_up_rescuees(&mut self, model: &Model) {
-        if !model.telemetry.as_ref().is_some_and(|rules| rules.has_phantoms) {
+        if !model.has_phantoms {
             return;
         }
         let (mission, mut scene) = self.scene(model);
@@ -37,8 +36,7 @@ impl State {
                 let Some(at) = telemetry.phantom(robot, model.tasks[task.index()].bounds, now) else {
                     continue;
                 };
-                let rescuee = RescueeId((model.phantoms_of(task).start + robot.id.index()) as u32);
-                let says = Statement::RescueeWaits { rescuee, at };
+                let says = Statement::RescueeWaits { rescuee: model.phantom_of(task, robot.id), at };
                 let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
                 telemetry.tell_mates(&report, crew.mates_of(robot.id), now, log);
             }

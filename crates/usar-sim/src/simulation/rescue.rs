@@ -3,6 +3,9 @@
 use teaming::question::MAX_TASKS;
 
 use super::State;
+use crate::ids::RobotId;
+use crate::intent::{Intent, Outcome};
+use crate::mission::Activity;
 use crate::model::Model;
 use crate::report::Report;
 
@@ -11,16 +14,31 @@ impl State {
     /// notice their own state before, and again when something has happened.
     pub(super) fn rescue(&mut self, model: &Model, heard: &mut Vec<Report>) {
         self.feel(model, heard);
+        let agents = &self.mission.crew.agents;
+        let is_loading = |robot: RobotId| matches!(agents[robot.index()].activity, Activity::Loading(..));
+        self.world.loading.retain(|(robot, _)| is_loading(*robot));
         let mut sharing = [None; MAX_TASKS];
         let mut robots = 0..self.world.robots.len() as u32;
         loop {
             let (mission, mut scene) = self.scene(model);
             let Some((robot, intent)) = mission.settle(&mut robots, &mut scene, &mut sharing) else { break };
             let outcome = self.world.carry_out(robot, intent, model);
+            self.note_in_vain(intent, &outcome);
             self.feel(model, heard);
             let (mission, mut scene) = self.scene(model);
             mission.note(robot, outcome, &mut scene, &mut sharing);
         }
         self.hear(model, heard);
+    }
+
+    /// Counts the robots that are after somebody who is not there to be loaded.
+    fn note_in_vain(&mut self, intent: Intent, outcome: &Outcome) {
+        let Intent::BeginLoading { sought, .. } = intent else { return };
+        let finds = &mut self.listeners.metrics.finds;
+        match outcome {
+            Outcome::NotThere(_) if !self.world.is_anybodys_place(sought) => finds.ghosts_visited += 1,
+            Outcome::NotThere(_) | Outcome::Taken(_) => finds.doubles += 1,
+            _ => {}
+        }
     }
 }

@@ -318,6 +318,9 @@ impl State {
     pub(super) fn expose(&mut self, model: &Model) {
         let unit = model.costs.unit;
         let (metrics, faults) = (&mut self.listeners.metrics, &self.faults);
+        let messages = self.telemetry.as_mut().map(|telemetry| telemetry.take_unpaid()).unwrap_or_default();
+        let medium = model.telemetry.as_ref().and_then(|rules| rules.medium.as_ref());
+        let message_energy = medium.map_or(0.0, |medium| medium.energy_per_message);
         for (robot, zones) in self.world.robots_in_zones(model) {
             let speed = robot.velocity.length();
             metrics.robots[robot.id.index()].note_step(f64::from(speed) * model.dt_s());
@@ -326,7 +329,8 @@ impl State {
                 continue;
             }
             let [energy, hp] = step_costs(model, agent, robot, speed, zones);
-            let energy = faults.energy_of(robot.id, energy);
+            let messages = messages.get(&robot.id).map_or(0.0, |count| f64::from(*count) * message_energy);
+            let energy = faults.energy_of(robot.id, energy + messages);
             let percent = [unit.to_percent(energy, robot.spec.energy), unit.to_percent(hp, robot.spec.hp)];
             let [energy, hp] = bearable(robot, percent, &model.mission);
             if energy > 0.0 || hp > 0.0 {
@@ -376,7 +380,7 @@ impl State {
             part(&self.world.physics.motions()),
             part(&self.world.robots),
             part(&self.world.lying_debris()),
-            part(&(self.world.rescuees.digest(), self.mission.claims.held())),
+            part(&(self.world.rescuees.digest(), self.mission.claims.held(), &self.world.loading)),
             part(&(self.beliefs.to_hash(), &self.sent, self.world.changes())),
             part(&(self.mission.course(), self.is_midway)),
             part(&self.navigator.to_hash()),

@@ -16,6 +16,7 @@ pub use debris::Debris;
 pub use rescuee::{Rescuee, RescueeState, Rescuees};
 pub use robot::Robot;
 
+use crate::ids::{RescueeId, RobotId};
 use crate::model::Model;
 use crate::physics::{DebrisBody, Physics, RobotBody};
 use crate::robot::STANDING_MPS;
@@ -51,6 +52,8 @@ pub struct World {
     pub closed_tasks: Vec<bool>,
     /// Rescuees, by id.
     pub rescuees: Rescuees,
+    /// The robots that are loading, and whom.
+    pub(crate) loading: Vec<(RobotId, RescueeId)>,
 }
 
 impl World {
@@ -75,6 +78,7 @@ impl World {
             zone_since: model.zones.iter().take(many).map(|_| 0).collect(),
             closed_tasks: model.tasks.iter().take(many).map(|task| task.begins_later).collect(),
             rescuees: Rescuees::new(&model.rescuees),
+            loading: Vec::new(),
         }
     }
 
