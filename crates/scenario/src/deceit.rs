@@ -400,13 +400,22 @@ impl Scenario {
 
     /// Whether robots may speak of rescuees that do not exist.
     pub fn has_phantoms(&self) -> bool {
+        self.has_lie(|lie| matches!(lie, Lie::PhantomRescuee { .. }))
+            || self.roles.iter().any(|role| role.sight.false_alarms_per_min > 0.0)
+    }
+
+    /// Whether robots may say that things are where they are not.
+    pub fn has_misplaced(&self) -> bool {
+        self.has_lie(|lie| matches!(lie, Lie::Misplace { .. }))
+    }
+
+    /// Whether any robot tells such a lie, sooner or later.
+    fn has_lie(&self, is_it: impl Fn(&Lie) -> bool) -> bool {
         let happens = self.timeline.iter().filter_map(|moment| match &moment.event {
             Happening::RobotLies { lie, .. } => Some(lie),
             _ => None,
         });
-        let mut lies = self.deceit.iter().map(|deceit| &deceit.lie).chain(happens);
-        lies.any(|lie| matches!(lie, Lie::PhantomRescuee { .. }))
-            || self.roles.iter().any(|role| role.sight.false_alarms_per_min > 0.0)
+        self.deceit.iter().map(|deceit| &deceit.lie).chain(happens).any(is_it)
     }
 
     /// Whether the base goes by reports: robots report, a medium carries what they say, or robots lie.

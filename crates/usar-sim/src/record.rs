@@ -6,7 +6,7 @@ use teaming::{Decision, Evidence, Extent, Member, Question, RoundOutcome};
 use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
-use crate::metrics::{Counts, Finds, CutOff, RoundRecord, TaskTotals};
+use crate::metrics::{Counts, CutOff, Finds, RoundRecord, TaskTotals};
 use crate::model::{Liar, Model, TelemetryModel};
 use crate::robot::Condition;
 use crate::tally::Tally;

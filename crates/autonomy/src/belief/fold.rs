@@ -96,8 +96,8 @@ impl Belief {
     pub fn rescuee_near(&self, at: Vector, sd_m: f32) -> Option<(RescueeId, &KnownRescuee)> {
         let near = self.maps.waiting.iter().filter_map(|(id, waits_at)| {
             let known = self.rescuees.get(id.index())?;
-            let (apart, is_exact) = ((*waits_at - at).length(), sd_m == 0.0 && known.sd_m == 0.0);
-            (!is_exact && apart <= gate_m([sd_m, known.sd_m])).then_some((apart, *id, known))
+            let apart = (*waits_at - at).length();
+            (sd_m + known.sd_m > 0.0 && apart <= gate_m([sd_m, known.sd_m])).then_some((apart, *id, known))
         });
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, id, known)| (id, known))
     }

@@ -71,7 +71,10 @@ impl Mission {
                 self.claims.set(rescuee, None);
                 self.crew.agent(robot).activity = Activity::Searching;
             }
-            Outcome::NotThere(rescuee) => self.go_on_without(rescuee, robot, scene),
+            Outcome::NotThere(rescuee) => {
+                self.claims.given_up[rescuee.index()] |= scene.model.has_misplaced;
+                self.go_on_without(rescuee, robot, scene);
+            }
             Outcome::Taken(rescuee) => {
                 self.claims.given_up[rescuee.index()] = true;
                 self.release_claim(robot);

@@ -67,9 +67,7 @@ impl Mission {
     fn is_taken(&self, id: RobotId, scene: &Scene) -> bool {
         let agent = &self.crew.agents[id.index()];
         let (Some(place), Some(task)) = (agent.sweep.last(), agent.task) else { return false };
-        let is_there = |mate: &RobotId| {
-            *mate != id && (scene.place_said(*mate) - *place).length() <= SWEEP_M
-        };
+        let is_there = |mate: &RobotId| *mate != id && (scene.place_said(*mate) - *place).length() <= SWEEP_M;
         agent.progress.held_up_steps > scene.model.control_steps_in(TAKEN_AFTER_S)
             && self.crew.groups[task.index()].members.iter().any(is_there)
     }

@@ -60,6 +60,8 @@ pub struct Model {
     pub arena: Vector,
     /// Whether robots speak of rescuees that do not exist: liars, or such as see them by mistake.
     pub has_phantoms: bool,
+    /// Whether liars say that things are where they are not, so that robots look whether they are.
+    pub has_misplaced: bool,
     /// Whether any robot sees rescuees where they are not, or overlooks them.
     pub has_sight_errors: bool,
     /// Names of the roles.
@@ -141,6 +143,7 @@ impl Model {
             control_steps: scenario.control_steps(),
             arena: vector(scenario.arena_m),
             has_phantoms: scenario.has_phantoms(),
+            has_misplaced: scenario.has_misplaced(),
             has_sight_errors: scenario.has_sight_errors(),
             roles: scenario.roles.iter().map(|role| role.name.clone()).collect(),
             needs: scenario.needs.iter().map(need).collect(),

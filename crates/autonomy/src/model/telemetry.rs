@@ -7,8 +7,8 @@ use rand::RngExt;
 use scenario::seed::{Purpose, stream};
 use scenario::shapes::{Outline, vector};
 use scenario::{
-    AtHome, Channel, Gauge, Happening, LevelSource, Lie, Loss, Mates, MediumRules, PathLoss, Resend, Scenario,
-    Who, Witness, rounded_share,
+    AtHome, Channel, Gauge, Happening, LevelSource, Lie, Loss, Mates, MediumRules, PathLoss, Resend,
+    Scenario, Who, Witness, rounded_share,
 };
 use serde::{Deserialize, Serialize};
 use teaming::{Expected, NeedId};

@@ -57,7 +57,8 @@ impl Telemetry {
             self.send_to_base(Statement::LevelsAre(report.clone()), robot, now, log);
         }
         for (robot, report) in robots.into_iter().zip(reports) {
-            let other = self.tells(rules, robot.id, now.time_s(), |lie| matches!(lie, Lie::Impersonate { .. }));
+            let other =
+                self.tells(rules, robot.id, now.time_s(), |lie| matches!(lie, Lie::Impersonate { .. }));
             if let Some(Lie::Impersonate { name }) = other.map(|lie| &lie.lie) {
                 let false_one = Levels { of: *name, by: *name, ..report };
                 self.send_to_base(Statement::LevelsAre(false_one), robot, now, log);

@@ -7,7 +7,7 @@ use scenario::seed::{Purpose, normal, stream_at};
 use teaming::TaskId;
 
 use super::View;
-use crate::belief::Belief;
+use crate::belief::{Belief, KnownRescuee};
 use crate::model::TaskModel;
 use crate::report::{Report, Statement};
 use crate::world::{Rescuee, RescueeState};
@@ -22,17 +22,17 @@ const TOLD_AGAIN: f32 = 0.5;
 pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
     let (observing, from) = (view.robot.observing_range() as f32, view.robot.position);
     let tasks = view.model.task_ids().zip(&view.model.tasks);
+    let is_misplaced = |known: &KnownRescuee, at| view.model.has_misplaced && known.waits_at != Some(at);
     for (id, task) in tasks.filter(|(_, task)| is_near(task, observing, from)) {
         for rescuee in &view.world.rescuees[task.rescuees.clone()] {
             let at = rescuee.position;
-            if rescuee.state != RescueeState::Waiting
-                || (at - from).length_squared() > observing * observing
+            if rescuee.state != RescueeState::Waiting || (at - from).length_squared() > observing * observing
             {
                 continue;
             }
             if view.model.has_sight_errors {
                 sent.extend(seen_with_errors(view, rescuee, (at - from).length() / observing, belief));
-            } else if belief.rescuees.get(rescuee.id.index()).is_none() {
+            } else if belief.rescuees.get(rescuee.id.index()).is_none_or(|known| is_misplaced(known, at)) {
                 sent.push(view.report(Statement::RescueeWaits { rescuee: rescuee.id, at }));
             }
         }
@@ -45,7 +45,8 @@ pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
 fn seen_with_errors(view: &View, rescuee: &Rescuee, share: f32, belief: &Belief) -> Option<Report> {
     let (model, robot, sight) = (view.model, view.robot, view.robot.spec.sight);
     let pair = u64::from(robot.id.0) << 32 | u64::from(rescuee.id.0);
-    let mut draws = stream_at(model.seed, Purpose::Sight, pair, view.step / model.steps_in(ERROR_HOLDS_S).max(1));
+    let mut draws =
+        stream_at(model.seed, Purpose::Sight, pair, view.step / model.steps_in(ERROR_HOLDS_S).max(1));
     let [x, y] = [(); 2].map(|()| normal(&mut draws, 0.0, sight.noise_m) as f32);
     let is_overlooked = draws.random::<f64>() < sight.miss;
     let (at, sd_m) = (rescuee.position + share * Vector::new(x, y), share * sight.noise_m as f32);

@@ -14,7 +14,7 @@ use crate::model::DebrisModel;
 const NOTICED_MOVE_M: f32 = 0.2;
 
 /// Position of absent pieces, in metres: far from every arena.
-const AWAY: Vector = Vector::new(-20_000.0, -20_000.0);
+pub(crate) const AWAY: Vector = Vector::new(-20_000.0, -20_000.0);
 
 /// A piece of debris in the world. It dereferences to its fixed properties, the [`DebrisModel`].
 #[derive(Clone, Serialize, Deserialize)]

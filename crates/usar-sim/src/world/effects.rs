@@ -46,7 +46,8 @@ impl World {
 
     /// Whether anybody is or was where a robot is after a rescuee.
     pub(crate) fn is_anybodys_place(&self, sought: Sought) -> bool {
-        let is_there = |rescuee: &Rescuee| rescuee.state != RescueeState::Absent && is_within_gate(rescuee, sought);
+        let is_there =
+            |rescuee: &Rescuee| rescuee.state != RescueeState::Absent && is_within_gate(rescuee, sought);
         self.rescuees.iter().any(is_there)
     }
 
@@ -88,7 +89,13 @@ impl World {
         near.min_by(|a, b| off(a).total_cmp(&off(b))).map(|rescuee| rescuee.id)
     }
 
-    fn load(&mut self, robot: RobotId, rescuee: RescueeId, sought: RescueeId, resource_of: RobotId) -> Outcome {
+    fn load(
+        &mut self,
+        robot: RobotId,
+        rescuee: RescueeId,
+        sought: RescueeId,
+        resource_of: RobotId,
+    ) -> Outcome {
         self.robots[resource_of.index()].resources -= 1;
         self.robots[robot.index()].load.push(rescuee);
         self.rescuees[rescuee.index()].state = RescueeState::OnBoard(robot);

@@ -12,6 +12,7 @@ use parry2d::query::distance;
 use scenario::shapes::Places;
 use serde::{Deserialize, Serialize};
 
+pub(crate) use debris::AWAY;
 pub use debris::Debris;
 pub use rescuee::{Rescuee, RescueeState, Rescuees};
 pub use robot::Robot;
