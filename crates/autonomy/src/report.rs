@@ -53,6 +53,15 @@ pub struct Track {
     pub velocity: Vector,
 }
 
+/// How far from each other two places may be to be those of one thing, in metres, when each is known with
+/// this standard deviation.
+pub fn gate_m(sd_m: [f32; 2]) -> f32 {
+    if sd_m == [0.0; 2] {
+        return 0.0; // exact places are the same or not
+    }
+    3.0 * (sd_m[0] * sd_m[0] + sd_m[1] * sd_m[1]).sqrt() + 0.3
+}
+
 /// The sender of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Speaker {

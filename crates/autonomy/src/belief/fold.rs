@@ -13,9 +13,8 @@ use super::news::{News, Opening, Seen};
 use super::table::Table;
 use crate::hash::part;
 use crate::ids::RescueeId;
-use crate::intent::gate_m;
 use crate::planning::{Inflation, KnownObstacle, ObstacleKey, ObstacleMap};
-use crate::report::{Report, Statement};
+use crate::report::{Report, Statement, gate_m};
 
 /// A belief about the things of the world, by their numbers.
 #[derive(Clone, Serialize, Deserialize)]

@@ -2,8 +2,9 @@
 
 use super::{Rescuee, RescueeState, World};
 use crate::ids::{RescueeId, RobotId};
-use crate::intent::{Intent, Outcome, Sought, gate_m};
+use crate::intent::{Intent, Outcome, Sought};
 use crate::model::Model;
+use crate::report::gate_m;
 
 impl World {
     /// Carries out what a robot wants, or refuses it.
