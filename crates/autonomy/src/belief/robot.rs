@@ -13,7 +13,7 @@ use crate::robot::RobotState;
 pub struct KnownRobot {
     state: RobotState,
     /// The step as of which it reported.
-    said_at: u64,
+    reported_step: u64,
 }
 
 impl Deref for KnownRobot {
@@ -27,7 +27,7 @@ impl Deref for KnownRobot {
 impl KnownRobot {
     /// A robot of which nothing is known but its fixed properties: it is at home, as it starts.
     pub fn new(model: &Arc<RobotModel>) -> Self {
-        Self { state: RobotState::new(model), said_at: 0 }
+        Self { state: RobotState::new(model), reported_step: 0 }
     }
 
     /// Its fixed properties, which a snapshot leaves out.
@@ -38,7 +38,7 @@ impl KnownRobot {
     /// It reports its state as of a step.
     pub(super) fn hear(&mut self, state: &RobotState, at_step: u64) {
         self.state.be_as(state);
-        self.said_at = at_step;
+        self.reported_step = at_step;
     }
 
     /// The base hands it as many resources as it can hold. Returns whether it lacked some.
@@ -50,7 +50,7 @@ impl KnownRobot {
     /// What counts in the hash chain.
     pub(super) fn to_hash(team: &[Self]) -> impl Serialize + '_ {
         let states: Vec<&RobotState> = team.iter().map(|robot| &robot.state).collect();
-        let said_at: Vec<u64> = team.iter().map(|robot| robot.said_at).collect();
-        (states, said_at)
+        let reported_step: Vec<u64> = team.iter().map(|robot| robot.reported_step).collect();
+        (states, reported_step)
     }
 }

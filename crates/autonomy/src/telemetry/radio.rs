@@ -24,21 +24,21 @@ impl Telemetry {
         log: &mut EventLog,
     ) {
         let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
-        self.send(report, Ends { from: robot.id, to: None }, now, log);
+        self.carry(report, Ends { from: robot.id, to: None }, now, log);
     }
 
     /// A robot tells its group-mates what it noticed, as far as it is honest.
-    pub fn tell_mates(&mut self, report: &Report, mates: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
+    pub fn say_to_mates(&mut self, report: &Report, mates: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
         let (Speaker::Robot(from), Some(rules)) = (report.from, &now.model.telemetry) else { return };
         let Some(report) = self.deceive(report, from, now).filter(|_| rules.medium.is_some()) else { return };
         let is_there = |mate: &&RobotId| **mate != from && now.team[mate.index()].is_able();
         for mate in mates.iter().filter(is_there) {
-            self.send(report.clone(), Ends { from, to: Some(*mate) }, now, log);
+            self.carry(report.clone(), Ends { from, to: Some(*mate) }, now, log);
         }
     }
 
-    /// Sends a report to a mate, or to the base: over the medium, if there is one between them.
-    fn send(&mut self, report: Report, ends: Ends, now: &Now<'_>, log: &mut EventLog) {
+    /// Carries a report to a mate, or to the base: over the medium, if there is one between them.
+    fn carry(&mut self, report: Report, ends: Ends, now: &Now<'_>, log: &mut EventLog) {
         let Some(rules) = &now.model.telemetry else { return };
         let Ends { from: sender, to } = ends;
         if self.is_mute[sender.index()] {

@@ -9,7 +9,7 @@ use crate::telemetry::in_turn;
 
 impl State {
     /// Robots tell their group-mates what they noticed, and liars what they make up.
-    pub(super) fn tell_mates(&mut self, noticed: &[Report], model: &Model) {
+    pub(super) fn say(&mut self, noticed: &[Report], model: &Model) {
         if model.mission.belief_sharing != BeliefSharing::ByRadio {
             return;
         }
@@ -18,7 +18,7 @@ impl State {
         mission.with_telemetry(&mut scene, |telemetry, now, log| {
             for robot in in_turn(now.team.iter(), now) {
                 let own = noticed.iter().filter(|report| report.from == Speaker::Robot(robot.id));
-                own.for_each(|report| telemetry.tell_mates(report, crew.mates_of(robot.id), now, log));
+                own.for_each(|report| telemetry.say_to_mates(report, crew.mates_of(robot.id), now, log));
             }
         });
     }
@@ -38,7 +38,7 @@ impl State {
                 };
                 let says = Statement::RescueeWaits { rescuee: model.phantom_of(task, robot.id), at };
                 let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
-                telemetry.tell_mates(&report, crew.mates_of(robot.id), now, log);
+                telemetry.say_to_mates(&report, crew.mates_of(robot.id), now, log);
             }
         });
     }

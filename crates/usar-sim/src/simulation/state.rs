@@ -201,8 +201,13 @@ impl State {
     /// when the radio brings them.
     pub(super) fn hear(&mut self, model: &Model, heard: &mut Vec<Report>) {
         heard.append(&mut self.sent);
-        self.tell_mates(heard, model);
+        self.say(heard, model);
         self.hear_mates(model);
+        self.believe(heard, model);
+    }
+
+    /// Those who share the belief of a sender take its reports into account.
+    fn believe(&mut self, heard: &mut Vec<Report>, model: &Model) {
         let Self { mission, beliefs, log, .. } = self;
         for report in heard.drain(..) {
             let is_news = beliefs.hear(&report, |robot| mission.crew.holder_of(robot, model));
