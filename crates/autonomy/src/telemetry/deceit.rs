@@ -27,10 +27,10 @@ impl Telemetry {
         };
         let mut said = report.clone();
         let off = |thing: u64| self.misplaced_by(from, thing, now.model, now.step);
-        match &mut said.says {
-            Statement::DebrisLies { debris, pose, .. } => pose.translation += off(u64::from(*debris)),
-            Statement::RescueeWaits { rescuee, at } => *at += off(1 << 32 | u64::from(rescuee.0)),
-            _ => {}
+        if let Statement::DebrisLies { debris, pose, .. } = &mut said.says {
+            pose.translation += off(u64::from(*debris));
+        } else if let Statement::RescueeWaits { rescuee, at } = &mut said.says {
+            *at += off(1 << 32 | u64::from(rescuee.0));
         }
         (!is_hidden).then_some(said)
     }

@@ -34,11 +34,13 @@ impl State {
     /// Counts the robots that are after somebody who is not there to be loaded.
     fn note_in_vain(&mut self, intent: Intent, outcome: &Outcome) {
         let Intent::BeginLoading { sought, .. } = intent else { return };
-        let finds = &mut self.listeners.metrics.finds;
-        match outcome {
-            Outcome::NotThere(_) if !self.world.is_anybodys_place(sought) => finds.ghosts_visited += 1,
-            Outcome::NotThere(_) | Outcome::Taken(_) => finds.doubles += 1,
-            _ => {}
+        let is_taken = matches!(outcome, Outcome::Taken(_));
+        if !is_taken && !matches!(outcome, Outcome::NotThere(_)) {
+            return;
         }
+        let was_anybody = is_taken || self.world.is_anybodys_place(sought);
+        let finds = &mut self.listeners.metrics.finds;
+        finds.doubles += u32::from(was_anybody);
+        finds.ghosts_visited += u32::from(!was_anybody);
     }
 }
