@@ -130,8 +130,8 @@ impl Mission {
         (scene.step >= done).then(|| Intent::Refill { levels: levels() })
     }
 
-    /// A rescuee within the reach of a robot, and the member whose resource it would use: the robot itself, or
-    /// the member that shares. None if the rescuee is not within reach, or no resource is left.
+    /// A rescuee within the reach of a robot, and the member whose resource it would use: the robot itself,
+    /// or the member that shares. None if the rescuee is not within reach, or no resource is left.
     fn resource_for(
         &self,
         robot: RobotId,

@@ -27,8 +27,8 @@ pub(super) fn sense(view: &View, belief: &Belief, sent: &mut Vec<Report>) {
     let all = (0..debris.len()).filter(|_| view.model.has_misplaced);
     let gates = view.model.gates.iter().copied().filter(|_| !view.model.has_misplaced);
     for number in gates.chain(all).filter(|number| has_changed(*number)) {
-        // A robot notices that a piece is not where it is held to lie. One that is in range where it lies now was
-        // reported above.
+        // A robot notices that a piece is not where it is held to lie. One that is in range where it lies now
+        // was reported above.
         let is_seen = debris[number].distance_to(at) <= range;
         let was_seen = |known: &KnownDebris| known.outline().distance_to(at) <= range;
         if !is_seen && belief.debris.get(number).is_some_and(was_seen) {
