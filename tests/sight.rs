@@ -57,9 +57,10 @@ fn by_radio(name: &str, medium: &str, deceit: &str) -> Scenario {
 #[test]
 fn each_message_costs_its_sender_what_the_scenario_says() {
     let paid = run(&by_radio("tunnel", "energy_per_message: 0.05", ""), 1);
-    let spent: f64 = paid.robots.iter().map(|robot| robot.energy_spent - 0.08 * robot.distance_m).sum();
+    let beyond_the_way: f64 =
+        paid.robots.iter().map(|robot| robot.energy_spent - 0.08 * robot.distance_m).sum();
     let sent: u64 = paid.heard.as_ref().unwrap().links.iter().map(|link| link.sent).sum();
-    let paid_for = spent / 0.05;
+    let paid_for = beyond_the_way / 0.05;
     // At rest places nothing is paid, and the distances are of the velocities before each step.
     assert!(
         sent > 1_000 && paid_for < 1.02 * sent as f64 && paid_for > 0.9 * sent as f64,

@@ -56,7 +56,7 @@ pub struct Track {
 /// How far from each other two places may be to be those of one thing, in metres, when each is known with
 /// this standard deviation.
 pub fn gate_m(sd_m: [f32; 2]) -> f32 {
-    if sd_m == [0.0; 2] {
+    if sd_m[0] + sd_m[1] <= 0.0 {
         return 0.0; // exact places are the same or not
     }
     3.0 * (sd_m[0] * sd_m[0] + sd_m[1] * sd_m[1]).sqrt() + 0.3

@@ -186,15 +186,15 @@ mod tests {
         let resend = Resend { times: 2, after_s: 0.5 };
         let medium = MediumModel { loss, resend, energy_per_message: 1.0, ..medium() };
         let mut channel = Channel::default();
-        let mut send = |i: u32| channel.send(&medium, sending(5, 0, Vector::ZERO, f64::from(i)));
-        let heard_s: Vec<Option<f64>> = (0..10_000).map(&mut send).collect();
-        let lost = heard_s.iter().filter(|heard| heard.is_none()).count() as f64 / 10_000.0;
-        assert!((lost - 0.064).abs() < 4.0 * 0.0025, "{lost}");
+        let mut attempt = |i: u32| channel.send(&medium, sending(5, 0, Vector::ZERO, f64::from(i)));
+        let heard_s: Vec<Option<f64>> = (0..10_000).map(&mut attempt).collect();
+        let share = heard_s.iter().filter(|heard| heard.is_none()).count() as f64 / 10_000.0;
+        assert!((share - 0.064).abs() < 4.0 * 0.0025, "{share}");
         let late = |(i, heard): (usize, &Option<f64>)| Some(heard.as_ref()? - i as f64);
         let late: Vec<f64> = heard_s.iter().enumerate().filter_map(late).collect();
         assert!([0.0, 0.5, 1.0].iter().all(|s| late.contains(s)), "sent at most twice again, 0.5 s apart");
-        let sent = channel.links().map(|(_, link)| link.sent).sum::<u64>();
-        assert_eq!(channel.take_unpaid().into_values().map(u64::from).sum::<u64>(), sent);
+        let count = channel.links().map(|(_, link)| link.sent).sum::<u64>();
+        assert_eq!(channel.take_unpaid().into_values().map(u64::from).sum::<u64>(), count);
         assert!(channel.take_unpaid().is_empty());
     }
 
