@@ -237,7 +237,8 @@ pub struct Sight {
     pub noise_m: f64,
     /// Probability that a robot overlooks a rescuee; drawn anew every 10 s.
     pub miss: f64,
-    /// Rescuees a minute that a robot sees in the area of its task and that do not exist, on average.
+    /// Times a minute, on average, that a robot near a task takes something for a rescuee. Its place is drawn
+    /// in the square round the observing range; outside the range or the task's area it is dismissed.
     pub false_alarms_per_min: f64,
 }
 

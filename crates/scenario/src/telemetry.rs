@@ -120,8 +120,8 @@ pub struct MediumRules {
     /// Whether a lost message is sent again.
     #[serde(skip_serializing_if = "Resend::is_never")]
     pub resend: Resend,
-    /// What each message costs its sender, in the unit of the scenario's costs of energy. One that is sent
-    /// again costs it again.
+    /// What each message costs its sender, in the unit of the scenario's costs of energy; nothing at a rest
+    /// place. One that is sent again costs it again.
     #[serde(skip_serializing_if = "is_nothing")]
     pub energy_per_message: f64,
 }

@@ -3,7 +3,6 @@
 use parry2d::math::Vector;
 use rand::RngExt;
 use scenario::seed::{Purpose, normal, stream_at};
-
 use teaming::TaskId;
 
 use super::View;
@@ -60,7 +59,8 @@ fn seen_with_errors(view: &View, rescuee: &Rescuee, share: f32, belief: &Belief)
 
 /// A rescuee that a robot sees in the area of a task and that does not exist.
 fn false_alarm(view: &View, task: TaskId, observing: f32) -> Option<Report> {
-    let per_min = view.robot.spec.sight.false_alarms_per_min;
+    let sight = view.robot.spec.sight;
+    let (per_min, sd_m) = (sight.false_alarms_per_min, sight.noise_m as f32);
     if per_min == 0.0 {
         return None;
     }
@@ -72,7 +72,7 @@ fn false_alarm(view: &View, task: TaskId, observing: f32) -> Option<Report> {
     let at = view.robot.position + off;
     let is_there = off.length() <= observing && at == at.clamp(min, max);
     let rescuee = model.phantom_of(task, view.robot.id);
-    (is_drawn && is_there).then(|| view.report(Statement::RescueeWaits { rescuee, at }))
+    (is_drawn && is_there).then(|| Report { sd_m, ..view.report(Statement::RescueeWaits { rescuee, at }) })
 }
 
 /// Whether a task may have rescuees within `range` metres of a point.
