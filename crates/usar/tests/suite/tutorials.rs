@@ -61,7 +61,7 @@ const LONG: [&str; 13] = [
     "results/readings",
     "results/right-of-way",
     "results/what-matters",
-    "PARAMETERS", // the page says above which
+    "results/paper-search",
 ];
 
 /// The commands of a block: lines that begin with `usar` or `python3`, with those that they are continued on.
