@@ -169,7 +169,7 @@ impl Own {
     fn ask(&self, question: &Question) -> Option<PyResult<Assignment>> {
         let (decide, question) = (Arc::clone(&self.decide), question.clone());
         self.caller.ask(move |py| {
-            let answer = decide.bind(py).call1((asked(py, &question)?,))?;
+            let answer = decide.bind(py).call1((asked(py, &question.sealed())?,))?;
             let assignment = groups(&answer)?;
             let checked = assignment.check(&question);
             checked.map_err(|error| PyValueError::new_err(error.to_string())).map(|()| assignment)

@@ -273,7 +273,7 @@ impl ProgramSession {
         self.questions += 1;
         let id = self.questions;
         let trial = self.trial.as_ref().map(|(_, scenario)| Trial { number: self.trials, scenario });
-        let line = Message::Question { id, trial, question: asked.question }.line();
+        let line = Message::Question { id, trial, question: &asked.question.sealed() }.line();
         if line.len() > MOST_BYTES {
             return Err(self.lose(ProgramError::from(Complaint::LongQuestion), asked.question));
         }

@@ -7,7 +7,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand::rngs::ChaCha8Rng;
 use schemars::JsonSchema;
 use serde::de::Error;
@@ -410,6 +410,15 @@ impl Question {
         self.needs.iter().map(|need| need.weight).collect()
     }
 
+    /// The same question for a program: its draws have a seed from which that of the trial does not follow.
+    /// The same question gets the same one.
+    #[must_use]
+    pub fn sealed(&self) -> Self {
+        let mut seed = [0; 32];
+        self.draws().fill(&mut seed);
+        Self { random_seed: RandomSeed(seed), ..self.clone() }
+    }
+
     /// The random generator for this question's draws.
     #[must_use]
     pub fn draws(&self) -> ChaCha8Rng {
@@ -527,6 +536,15 @@ mod tests {
     #[test]
     fn the_hardest_task_comes_first_and_the_table_settles_ties() {
         assert_eq!(hardest_first([2, 3, 3, 1].into_iter()), [1, 2, 0, 3].map(TaskId));
+    }
+
+    #[test]
+    fn a_sealed_question_does_not_show_the_seed_of_its_draws() {
+        let question = Question { random_seed: RandomSeed([7; 32]), ..Question::default() };
+        let sealed = question.sealed();
+        assert_eq!((sealed.clone(), sealed.random_seed == question.random_seed), (question.sealed(), false));
+        let shown = sealed.random_seed.0.windows(4).any(|part| part == [7; 4]);
+        assert!(!shown, "a part of the seed is in the sealed one");
     }
 
     #[test]
