@@ -111,7 +111,7 @@ fn by_hand(scenario: &Scenario, mut answer: impl FnMut(&mut Simulation, Question
     loop {
         let question = match trial.advance() {
             Advance::Running => None,
-            Advance::Asks(Ask::Grouping(question)) => Some(question.clone()),
+            Advance::Asks(_) => trial.question().cloned(),
             Advance::Over(_) => break,
         };
         question.into_iter().for_each(|question| answer(&mut trial, question));

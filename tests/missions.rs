@@ -7,7 +7,7 @@ use scenario::{RoleKind, Scenario};
 use teaming::{Account, Asked, RoleId, TaskId};
 use usar_sim::ids::RobotId;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::{Advance, Ask, Simulation};
+use usar_sim::simulation::{Advance, Simulation};
 
 use crate::support::{policy, root, trial};
 
@@ -237,7 +237,7 @@ fn a_mission_restored_from_snapshots_ends_as_if_it_had_not_been() {
         loop {
             let answer = match trial.advance() {
                 Advance::Running => None,
-                Advance::Asks(Ask::Grouping(question)) => Some(policy.decide(&Asked::of(question)).unwrap()),
+                Advance::Asks(_) => trial.question().map(|it| policy.decide(&Asked::of(it)).unwrap()),
                 Advance::Over(_) => break,
             };
             if answer.is_some() || trial.steps().is_multiple_of(997) {

@@ -21,6 +21,7 @@ mod packages;
 mod pairing;
 mod paper_counts;
 mod random_worlds;
+mod robots_decide;
 mod routes;
 mod scenarios;
 mod schemas;

@@ -9,7 +9,7 @@ use scenario::seed::trial_number;
 use serde::{Deserialize, Serialize};
 use teaming::{Assignment, Decision, Question, Session, TrialStart};
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::{Advance, Ask, Simulation};
+use usar_sim::simulation::{Advance, Simulation};
 
 use crate::Failure;
 use crate::texts::Texts;
@@ -148,8 +148,9 @@ impl Trial {
             None => match self.simulation.advance() {
                 Advance::Running => None,
                 Advance::Over(status) => Some(status),
-                Advance::Asks(Ask::Grouping(question)) => {
-                    return Ok(Some(Progress::Asks { question: Box::new(question.clone()) }));
+                Advance::Asks(_) => {
+                    let question = self.simulation.question().cloned();
+                    return Ok(question.map(|question| Progress::Asks { question: Box::new(question) }));
                 }
             },
         };

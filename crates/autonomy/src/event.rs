@@ -323,7 +323,10 @@ impl Event {
             | Statement::TaskIs { .. }
             | Statement::WreckLies { .. }
             | Statement::LevelsAre(_)
-            | Statement::MateGoes(_) => None,
+            | Statement::MateGoes(_)
+            | Statement::RoundWas(_)
+            | Statement::StaysOut { .. }
+            | Statement::HasHeard(_) => None,
         }
     }
 }

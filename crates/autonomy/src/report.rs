@@ -7,7 +7,7 @@ use parry2d::math::{Pose, Vector};
 use parry2d::shape::SharedShape;
 use scenario::shapes::RadiationZone;
 use serde::{Deserialize, Serialize};
-use teaming::{LevelReport, Rating, TaskId};
+use teaming::{LevelReport, Rating, RobotRound, TaskId};
 
 use crate::ids::{RescueeId, RobotId};
 
@@ -129,4 +129,43 @@ pub enum Statement {
     LevelsAre(Levels),
     /// A robot goes so fast.
     MateGoes(Rating),
+    /// What became of the sender in the round that is over.
+    RoundWas(RobotRound),
+    /// The sender stays out of a round.
+    StaysOut {
+        /// The number of the round.
+        round: u32,
+    },
+    /// What the sender has heard of all before a round.
+    HasHeard(Digest),
+}
+
+/// What a robot has heard of all before a round.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Digest {
+    /// The number of the round.
+    pub round: u32,
+    /// The newest that each robot said of itself, as far as it was heard.
+    pub levels: Vec<Levels>,
+    /// The robots that stay out.
+    pub out: Vec<RobotId>,
+}
+
+impl Statement {
+    /// Whether it is about the field. Others are about the team.
+    pub fn is_about_the_field(&self) -> bool {
+        match self {
+            Self::DebrisLies { .. }
+            | Self::ZoneIs { .. }
+            | Self::RescueeWaits { .. }
+            | Self::RescueeIsGone { .. }
+            | Self::TaskIs { .. }
+            | Self::WreckLies { .. } => true,
+            Self::LevelsAre(_)
+            | Self::MateGoes(_)
+            | Self::RoundWas(_)
+            | Self::StaysOut { .. }
+            | Self::HasHeard(_) => false,
+        }
+    }
 }

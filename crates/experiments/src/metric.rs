@@ -3,6 +3,7 @@
 //! stopping rules, reports and calibrations look metrics up there.
 
 mod belief;
+mod joins;
 mod values;
 
 use std::ops::Deref;
@@ -140,6 +141,21 @@ const OF_REPORTS: &[Declaration] = &[
             liars. One that is never detected counts with all of these: the mean is censored there."),
     whole("false_exclusions", "", belief::false_exclusions).lower()
         .means("How often an honest robot was left at home by a policy with an estimator."),
+];
+
+/// Metrics of trials in which robots decide.
+#[rustfmt::skip]
+const OF_JOINS: &[Declaration] = &[
+    whole("agreement", "", joins::agreement).higher()
+        .means("The share of pairs of robots that saw the same groups when they decided, on average over rounds."),
+    whole("sizes_missed", "", joins::sizes_missed).lower()
+        .means("Robots above the number that the base would have sent to their task, on average over rounds."),
+    whole("belief_age_s", "s", joins::belief_age).lower()
+        .means("How old what robots had last heard of each other was when they decided, on average."),
+    whole("never_heard", "", joins::never_heard).lower()
+        .means("The share of other robots of which a robot had never heard when it decided, on average."),
+    whole("messages", "", joins::messages).means("Messages over the medium, for each hearer one."),
+    whole("messages_lost", "", joins::messages_lost).means("Those that were not heard until the end."),
 ];
 
 const fn whole(name: &'static str, unit: &'static str, value: Value) -> Declaration {
@@ -338,17 +354,23 @@ impl Deref for Catalogue {
 }
 
 impl Catalogue {
-    /// All metrics of a scenario: of its tasks, in its words; those of reports where the base
-    /// goes by reports, or robots see rescuees with errors.
+    /// All metrics of a scenario: of its tasks, in its words; those of reports where the base goes by reports,
+    /// or robots see rescuees with errors; those of joins where robots decide.
     pub fn of(scenario: &Scenario) -> Self {
-        Self::of_cases(scenario, scenario.goes_by_reports() || scenario.has_sight_errors())
+        Self::of_cases(scenario, std::iter::once(scenario))
     }
 
-    /// The same for a sweep over a scenario, in any case of which the base may go by reports.
-    pub(crate) fn of_cases(scenario: &Scenario, goes_by_reports: bool) -> Self {
-        let mut all = Self::with(&task_names(scenario), &scenario.words);
-        if goes_by_reports {
-            all.metrics.extend(OF_REPORTS.iter().flat_map(|of| of.metrics(&[], &scenario.words)));
+    /// The same for a sweep over a scenario with these cases.
+    pub(crate) fn of_cases<'c>(base: &Scenario, cases: impl Iterator<Item = &'c Scenario> + Clone) -> Self {
+        let mut all = Self::with(&task_names(base), &base.words);
+        let mut more = |them: &[Declaration]| {
+            all.metrics.extend(them.iter().flat_map(|of| of.metrics(&[], &base.words)))
+        };
+        if cases.clone().any(|case| case.goes_by_reports() || case.has_sight_errors()) {
+            more(OF_REPORTS);
+        }
+        if cases.clone().any(|case| !case.mission.decides.is_base()) {
+            more(OF_JOINS);
         }
         all
     }

@@ -38,7 +38,7 @@ impl World {
 impl TimedDecision {
     /// Checks that the decision and its matrices fit these tables.
     pub(crate) fn check(&self, tables: &Tables) -> Result<(), Box<Problem>> {
-        tables.check_decision(&self.question, &self.decision, self.truth.as_deref())?;
+        tables.check_decision(&self.question, &self.decision, &self.joins, self.truth.as_deref())?;
         let Some(Trust { members, robots, groups, .. }) = &self.trust else { return Ok(()) };
         let is_square = |matrix: &[Vec<Option<f64>>], size: usize| {
             matrix.len() == size && matrix.iter().all(|row| row.len() == size)

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use teaming::{Decision, Member, Question};
 use usar_sim::event::Event;
 use usar_sim::fit::is_result;
-use usar_sim::record::TrialRecord;
+use usar_sim::record::{Join, TrialRecord};
 
 use crate::chunk::{Chunk, Chunks, Kind};
 use crate::error::ReadError;
@@ -53,6 +53,9 @@ pub struct TimedDecision {
     pub decision: Decision,
     /// The members as they really were; absent where the question had them as they were.
     pub truth: Option<Vec<Member>>,
+    /// How each robot decided, where robots did.
+    #[serde(default)]
+    pub joins: Vec<Join>,
     /// The matrix of trust at the decision, by what was reported.
     pub trust: Option<Trust>,
 }

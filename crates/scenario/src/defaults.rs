@@ -6,9 +6,9 @@ use rne_core::hierarchy::NeedLevel;
 use teaming::GroupSizes;
 
 use super::file::{
-    BeliefSharing, CostUnit, Costs, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure, MissionEnd,
-    MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay, RoleFile,
-    RoleKind, RoundEnd, TurnBack,
+    BeliefSharing, CostUnit, Costs, Decider, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure,
+    MissionEnd, MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay,
+    RoleFile, RoleKind, RoundEnd, TurnBack,
 };
 use crate::{Rates, Sight, WorkRates};
 
@@ -87,6 +87,11 @@ impl Default for Costs {
     }
 }
 
+/// Time after which a team decides again of which nobody went, in seconds.
+pub(crate) fn retry_s() -> f64 {
+    30.0
+}
+
 impl Default for MissionRules {
     fn default() -> Self {
         Self {
@@ -100,6 +105,7 @@ impl Default for MissionRules {
             rest_fills: RestFills::Both,
             rest_at_home: RestAtHome::DuringRound,
             load_at_rest: LoadAtRest::Delivered,
+            decides: Decider::Base,
             round_end: RoundEnd::EverybodyHome,
             ends: MissionEnd::WhenDone,
             group_sizes: GroupSizes::Parts,

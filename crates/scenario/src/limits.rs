@@ -212,6 +212,12 @@ ron_tree::limits! {
     THRESHOLD: "mission.*_threshold" = 0, 99;
     /// Reserve for the way to rest.
     REST_RESERVE: "mission.rest_reserve" = 0, 10;
+    /// Time between two attempts to form groups, in seconds.
+    RETRY_S: "mission.decides.Robots.retry_s" = 1, 3_600;
+    /// Exchanges of what robots have heard.
+    EXCHANGES: "mission.decides.Robots.by.Gossip.exchanges" = 1, 100;
+    /// Time between two exchanges, in seconds.
+    EXCHANGE_S: "mission.decides.Robots.by.Gossip.every_s" = 0, 600;
     /// Time at rest, in seconds.
     REST_S: "mission.rest_s" = 0, 86_400;
     /// Time to load a rescuee, in seconds.

@@ -153,6 +153,61 @@ pub enum BeliefSharing {
     ByRadio,
 }
 
+/// Who decides which robot goes to which task.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum Decider {
+    /// The base, for all robots, by what it heard of them. The default.
+    #[default]
+    Base,
+    /// Each robot for itself, by what it knows of the others: it groups the team as the policy says, and joins
+    /// the group that it would be in. What robots say of themselves, they say to all.
+    Robots {
+        /// How robots come to know of each other before they decide.
+        #[serde(default)]
+        by: Exchange,
+        /// Whose draws a policy makes that draws.
+        #[serde(default)]
+        coin: Coin,
+        /// A team of which nobody went decides again after this time, in seconds.
+        #[serde(default = "crate::defaults::retry_s")]
+        retry_s: f64,
+    },
+}
+
+impl Decider {
+    /// Whether the base decides.
+    #[must_use]
+    pub fn is_base(&self) -> bool {
+        matches!(self, Self::Base)
+    }
+}
+
+/// How robots come to know of each other before they decide.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum Exchange {
+    /// Each says once how it is, and decides by what it has heard. The default.
+    #[default]
+    Alone,
+    /// The same; then each says to all what it has heard of all, several times, and the newest report counts.
+    Gossip {
+        /// How often.
+        exchanges: u32,
+        /// Time from one to the next, and to the decision, in seconds.
+        #[serde(default)]
+        every_s: f64,
+    },
+}
+
+/// Whose draws a policy makes where robots decide.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum Coin {
+    /// Each robot has draws of its own. The default.
+    #[default]
+    Own,
+    /// All robots have the draws of the base, as if they had agreed on a number before.
+    Common,
+}
+
 /// Rules of the mission.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -178,6 +233,9 @@ pub struct MissionRules {
     pub rest_at_home: RestAtHome,
     /// Where the load of a robot that goes to rest is delivered.
     pub load_at_rest: LoadAtRest,
+    /// Who decides which robot goes to which task.
+    #[serde(skip_serializing_if = "Decider::is_base")]
+    pub decides: Decider,
     /// Who must be home before the next round begins.
     pub round_end: RoundEnd,
     /// When the mission ends.

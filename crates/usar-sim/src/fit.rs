@@ -4,10 +4,10 @@
 use ron_tree::Problem;
 use scenario::Scenario;
 use serde_json::Value;
-use teaming::{Decision, Member, MemberOutcome, Question, RoundOutcome, TaskId};
+use teaming::{Assignment, Decision, Member, MemberOutcome, Question, RoundOutcome, TaskId};
 
 use crate::event::Event;
-use crate::record::{TaskRecord, TrialRecord};
+use crate::record::{DecisionRecord, Join, TaskRecord, TrialRecord};
 
 /// No result of a trial is as large as this: neither a time, nor a cost, nor a distance.
 const MOST: f64 = 1e15;
@@ -99,12 +99,18 @@ impl<'a> Tables<'a> {
         number("robot", self.robots, field, robot.into())
     }
 
-    /// Checks a decision: the question, its answer, and the members as they really were. The policy's account
-    /// of its answer is its own matter.
+    /// Checks a decision: the question, its answer, how robots decided, and the members as they really were.
+    /// The policy's account of its answer is its own matter.
     ///
     /// # Errors
     /// The first value that does not fit.
-    pub fn check_decision(&self, question: &Question, decision: &Decision, truth: Option<&[Member]>) -> Fits {
+    pub fn check_decision(
+        &self,
+        question: &Question,
+        decision: &Decision,
+        joins: &[Join],
+        truth: Option<&[Member]>,
+    ) -> Fits {
         let tasks = question.tasks.iter().map(|task| task.name.as_str());
         fits(tasks.eq(self.tasks.iter().copied()), "question.tasks", "must be the tasks of the scenario")?;
         let roles = question.roles.iter().map(String::as_str);
@@ -114,12 +120,30 @@ impl<'a> Tables<'a> {
         self.check_members(question)?;
         each("question.history", &question.history, |round| self.check_outcome(round))?;
         let answered = decision.assignment.check(question);
-        answered
-            .map_err(|wrong| Problem::new("decision.assignment", format!("does not fit: {wrong}"), ""))?;
+        if joins.is_empty() {
+            let rule = |wrong| format!("does not fit: {wrong}");
+            answered.map_err(|wrong| Problem::new("decision.assignment", rule(wrong), ""))?;
+        } else {
+            self.check_joins(decision, joins)?;
+        }
         let Some(truth) = truth else { return Ok(()) };
         self.check_members(&Question { members: truth.to_vec(), ..question.clone() })?;
         let ids = |members: &[Member]| members.iter().map(|member| member.id).collect::<Vec<_>>();
         fits(ids(truth) == ids(&question.members), "truth", "must be of the members of the question")
+    }
+
+    /// Checks that the groups are those that the robots joined.
+    fn check_joins(&self, decision: &Decision, joins: &[Join]) -> Fits {
+        let Assignment { groups, idle } = &decision.assignment;
+        let grouped = groups.iter().chain([idle]).map(Vec::len).sum::<usize>();
+        let joined = |join: &Join| decision.assignment.task_of(join.robot) == join.sees.task_of(join.robot);
+        let is_sum = groups.len() == self.tasks.len() && grouped == joins.len();
+        fits(is_sum && joins.iter().all(joined), "decision.assignment", "must be what the robots joined")?;
+        each("joins", joins, |join| {
+            fits(join.sees.groups.len() == self.tasks.len(), "sees", "must have a group for each task")?;
+            let seen = join.sees.groups.iter().chain([&join.sees.idle]).flatten();
+            seen.chain([&join.robot]).try_for_each(|robot| self.robot("sees", *robot))
+        })
     }
 
     fn check_members(&self, question: &Question) -> Fits {
@@ -170,7 +194,8 @@ impl<'a> Tables<'a> {
         })?;
         each("ledger", &record.ledger, |round| self.check_outcome(round))?;
         each("decisions", &record.decisions, |asked| {
-            self.check_decision(&asked.question, &asked.decision, asked.truth.as_deref())
+            let DecisionRecord { question, decision, truth, joins } = asked;
+            self.check_decision(question, decision, joins, truth.as_deref())
         })?;
         fits(record.robots.len() == self.robots, "robots", "must be the robots of the scenario")?;
         let are_in_order = record.robots.iter().zip(0..).all(|(robot, id)| robot.robot == id);

@@ -1,7 +1,7 @@
 //! The record of a trial: its results once it is over.
 
 use serde::{Deserialize, Serialize};
-use teaming::{Decision, Evidence, Extent, Member, Question, RoundOutcome};
+use teaming::{Assignment, Decision, Evidence, Extent, Member, Question, RoundOutcome};
 
 use crate::conflict::Delay;
 use crate::hash::HashChain;
@@ -118,6 +118,20 @@ pub struct DecisionRecord {
     /// The members as they really were; absent where the question had them as they were. See
     /// [`DecisionRecord::team`].
     pub truth: Option<Vec<Member>>,
+    /// How each robot that took part decided, where robots did: the answer is then what came of it.
+    #[serde(default)]
+    pub joins: Vec<Join>,
+}
+
+/// How a robot decided.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Join {
+    /// The robot.
+    pub robot: u32,
+    /// The groups as it sees them. It joined its own.
+    pub sees: Assignment,
+    /// How old what it last heard of each other member was, in seconds; none for whom it never heard.
+    pub ages_s: Vec<Option<f64>>,
 }
 
 impl DecisionRecord {

@@ -162,7 +162,11 @@ impl Belief {
                 self.hear_of_wreck(robot.0, known)
             }
             // The base keeps an account of its own of what robots say of themselves and of their mates.
-            Statement::LevelsAre(_) | Statement::MateGoes(_) => false,
+            Statement::LevelsAre(_)
+            | Statement::MateGoes(_)
+            | Statement::RoundWas(_)
+            | Statement::StaysOut { .. }
+            | Statement::HasHeard(_) => false,
         }
     }
 

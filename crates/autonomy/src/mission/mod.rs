@@ -42,8 +42,19 @@ const GIVE_UP_S: f64 = 2.0;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Pending {
     question: Question,
+    /// What each fit robot asks itself, where robots decide.
+    joins: Vec<Question>,
     /// Robots that must rest during the round, and why.
     unfit: Vec<(RobotId, TurnBackCause)>,
+}
+
+/// What robots at home exchange before they decide.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Talks {
+    /// How often they say what they have heard.
+    left: u32,
+    /// The step in which they do so, or decide.
+    next_step: u64,
 }
 
 /// The state of the mission of one trial.
@@ -58,6 +69,9 @@ pub struct Mission {
     /// Why the mission is over, once it is.
     pub ending: Option<Ending>,
     pending: Option<Pending>,
+    talks: Option<Talks>,
+    /// No round opens before this step.
+    waits_until: u64,
 }
 
 /// Why a mission ends before the duration of the trial.
@@ -75,7 +89,7 @@ impl Mission {
     /// A mission in which all robots are at home, or on their errands.
     pub fn new(model: &Model) -> Self {
         let (crew, claims) = (Crew::new(model), Claims::nothing(model.rescuee_numbers()));
-        Self { crew, claims, round: 0, ending: None, pending: None }
+        Self { crew, claims, round: 0, ending: None, pending: None, talks: None, waits_until: 0 }
     }
 
     /// The question that waits for an assignment, if there is one.
@@ -83,10 +97,22 @@ impl Mission {
         self.pending.as_ref().map(|pending| &pending.question)
     }
 
-    /// The state of the mission without the claims: a part of the hash chain.
+    /// What each fit robot asks itself, where robots decide and a question waits.
+    pub fn joins(&self) -> &[Question] {
+        self.pending.as_ref().map_or(&[], |pending| &pending.joins)
+    }
+
+    /// The state of the mission without the claims and the talks: a part of the hash chain.
     pub fn course(&self) -> impl Serialize + '_ {
-        let Self { crew: Crew { agents, groups, .. }, claims, round, ending, pending } = self;
+        let Self { crew: Crew { agents, groups, .. }, claims, round, ending, pending, .. } = self;
+        let pending = pending.as_ref().map(|pending| (&pending.question, &pending.unfit));
         (agents, groups, &claims.given_up, round, ending, pending)
+    }
+
+    /// How far the robots are in their talks before a round, and until when they wait: a part of the hash
+    /// chain; `None` where they neither talk nor have waited.
+    pub fn talks(&self) -> Option<impl Serialize + use<>> {
+        (self.talks.is_some() || self.waits_until > 0).then_some((self.talks, self.waits_until))
     }
 
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
@@ -103,7 +129,16 @@ impl Mission {
         } else if scene.beliefs.team.iter().any(|robot| robot.is_able() && robot.can_carry()) {
             let crew = &mut self.crew;
             crew.note_progress(scene);
-            if crew.everybody_is_home(scene) && crew.can_begin_round(scene) && !crew.rest_first(scene) {
+            if self.talks.is_some() {
+                self.talk(scene);
+                return Vec::new();
+            }
+            let is_due = scene.step >= self.waits_until;
+            if is_due
+                && crew.everybody_is_home(scene)
+                && crew.can_begin_round(scene)
+                && !crew.rest_first(scene)
+            {
                 self.end_round(scene);
                 return self.open_round(scene);
             }

@@ -1,15 +1,15 @@
 //! Between rounds: the end of one, the opening of the next, and the departure of the groups.
 
-use scenario::LevelSource;
-use teaming::Assignment;
+use scenario::{Decider, Exchange, LevelSource};
+use teaming::{Assignment, Question};
 
 use super::question::question;
-use super::{Activity, Mission, Pending, Scene};
+use super::{Activity, Mission, Pending, Scene, Talks};
 use crate::belief::KnownRobot;
 use crate::belief::{Beliefs, Holder};
-use crate::event::{Event, EventLog};
+use crate::event::{Event, EventLog, TurnBackCause};
 use crate::ids::RobotId;
-use crate::telemetry::{Now, Telemetry};
+use crate::telemetry::{Now, Telemetry, seed_of};
 
 impl Mission {
     /// Lets telemetry, where there is any, do something at this moment of the trial.
@@ -36,6 +36,9 @@ impl Mission {
         let Beliefs { team, ledger, .. } = &mut *scene.beliefs;
         ledger.end(team, unit, scene.step as f64 * scene.model.dt_s(), went_to_rest);
         self.with_telemetry(scene, Telemetry::rate);
+        if let Some(round) = scene.beliefs.ledger.rounds().last().cloned() {
+            self.with_telemetry(scene, |telemetry, now, log| telemetry.tell_rounds(&round, now, log));
+        }
         for (agent, robot) in self.crew.agents.iter_mut().zip(&scene.beliefs.team) {
             agent.task = None;
             if let Some([energy, hp]) = agent.levels_at_start {
@@ -45,63 +48,138 @@ impl Mission {
         }
     }
 
-    /// Restocks the robots at home, and asks how the fit ones are to be grouped. If no robot is fit, assigns
-    /// empty groups without a question. Returns the robots that the base restocks; it knows what it hands
-    /// out.
+    /// Restocks the robots at home, which say how they are. Where the base decides, it asks at once how the
+    /// fit ones are to be grouped; where robots do, they talk first. Returns the robots that the base
+    /// restocks; it knows what it hands out.
     pub(super) fn open_round(&mut self, scene: &mut Scene) -> Vec<RobotId> {
         self.round += 1;
         self.claims.given_up.fill(false);
-        let is_home: Vec<bool> = self.crew.agents.iter().map(|a| a.activity == Activity::Home).collect();
-        let takes_part = |robot: &KnownRobot| robot.is_able() && is_home[robot.id.index()];
         let mut restocked = Vec::new();
-        for robot in scene.beliefs.team.iter_mut().filter(|robot| takes_part(robot)) {
+        for id in self.at_home(&scene.beliefs.team) {
+            let robot = &mut scene.beliefs.team[id.index()];
             if robot.restock() {
-                restocked.push(robot.id);
-                scene.log.push(Event::Restocked { robot: robot.id, resources: robot.resources });
+                restocked.push(id);
+                scene.log.push(Event::Restocked { robot: id, resources: robot.resources });
             }
-            self.crew.agents[robot.id.index()].levels_at_start = Some([robot.energy, robot.hp]);
+            self.crew.agent(id).levels_at_start = Some([robot.energy, robot.hp]);
         }
         self.with_telemetry(scene, Telemetry::ask_at_home);
         if let Some(telemetry) = scene.telemetry.as_deref_mut() {
             telemetry.close_round(scene.beliefs.ledger.rounds(), scene.model, scene.step);
-            telemetry.note_question(self.round);
         }
-        let telemetry = scene.telemetry.as_deref();
+        match scene.model.mission.decides {
+            Decider::Base => self.ask(scene),
+            Decider::Robots { by, .. } => {
+                let (_, unfit) = self.fit_and_unfit(scene);
+                let who: Vec<RobotId> = unfit.into_iter().map(|(id, _)| id).collect();
+                self.with_telemetry(scene, |telemetry, now, log| telemetry.tell_who_stays(&who, now, log));
+                let left = if let Exchange::Gossip { exchanges, .. } = by { exchanges } else { 0 };
+                self.talks = Some(Talks { left, next_step: scene.step });
+                self.talk(scene);
+            }
+        }
+        restocked
+    }
+
+    /// Robots say what they have heard, when it is time, and decide at last.
+    pub(super) fn talk(&mut self, scene: &mut Scene) {
+        let Decider::Robots { by: Exchange::Gossip { every_s, .. }, .. } = scene.model.mission.decides else {
+            self.talks = None;
+            return self.ask(scene);
+        };
+        while let Some(Talks { left, next_step }) = self.talks.filter(|talks| talks.next_step <= scene.step) {
+            if left == 0 {
+                self.talks = None;
+                return self.ask(scene);
+            }
+            self.with_telemetry(scene, Telemetry::exchange);
+            let next_step = next_step + scene.model.steps_in(every_s);
+            self.talks = Some(Talks { left: left - 1, next_step });
+        }
+    }
+
+    /// The robots at home that can act.
+    fn at_home(&self, team: &[KnownRobot]) -> Vec<RobotId> {
+        let is_home = |robot: &&KnownRobot| {
+            robot.is_able() && self.crew.agents[robot.id.index()].activity == Activity::Home
+        };
+        team.iter().filter(is_home).map(|robot| robot.id).collect()
+    }
+
+    /// The robots at home that take part in the round, and those that must rest, and why. The base judges
+    /// them by what it knows of them, and a robot itself by how it is.
+    fn fit_and_unfit(&self, scene: &Scene) -> (Vec<RobotId>, Vec<(RobotId, TurnBackCause)>) {
+        let (telemetry, mission) = (scene.telemetry.as_deref(), &scene.model.mission);
         let as_judged = |robot: &KnownRobot| match (telemetry, &scene.model.telemetry) {
-            (Some(telemetry), Some(rules)) if rules.fitness == LevelSource::Reports => {
+            (Some(telemetry), Some(rules))
+                if rules.fitness == LevelSource::Reports && mission.decides.is_base() =>
+            {
                 robot.with_levels(telemetry.levels(rules, robot.id))
             }
             _ => (**robot).clone(),
         };
         let (mut fit, mut unfit) = (Vec::new(), Vec::new());
         let tasks = self.crew.groups.len() as u16;
-        for robot in scene.beliefs.team.iter().filter(|robot| takes_part(robot)) {
-            let agent = &self.crew.agents[robot.id.index()];
-            match self.crew.unfit_cause(&scene.model.mission, &as_judged(robot)) {
-                None => fit.push(robot),
+        for id in self.at_home(&scene.beliefs.team) {
+            let agent = &self.crew.agents[id.index()];
+            match self.crew.unfit_cause(mission, &as_judged(&scene.beliefs.team[id.index()])) {
+                None => fit.push(id),
                 Some(_) if agent.has_given_up_all_rests(tasks) => {} // it stays home this time
-                Some(cause) => unfit.push((robot.id, cause)),
+                Some(cause) => unfit.push((id, cause)),
             }
         }
-        let member = |robot: &&KnownRobot| match telemetry {
-            Some(telemetry) => telemetry.member(robot, scene.model),
-            None => robot.member(&scene.model.needs),
-        };
-        let members = fit.iter().filter_map(member).collect();
-        let question = question(scene.model, self.round, scene.beliefs.of(None), members);
+        (fit, unfit)
+    }
+
+    /// Asks how the fit robots are to be grouped. If no robot is fit, assigns empty groups without a
+    /// question.
+    fn ask(&mut self, scene: &mut Scene) {
+        if let Some(telemetry) = scene.telemetry.as_deref_mut() {
+            telemetry.close_rounds_of_peers(scene.beliefs.ledger.rounds(), scene.model);
+            telemetry.note_question(self.round);
+        }
+        let (fit, unfit) = self.fit_and_unfit(scene);
+        let question = self.question_of(None, &fit, scene);
+        let robots_decide = !scene.model.mission.decides.is_base();
+        let asking = fit.iter().filter(|_| robots_decide);
+        let joins = asking.map(|robot| self.question_of(Some(*robot), &fit, scene)).collect();
         self.crew.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let is_empty = question.members.is_empty();
-        self.pending = Some(Pending { question, unfit });
+        self.pending = Some(Pending { question, joins, unfit });
         if is_empty {
             self.assign(&Assignment::new(vec![Vec::new(); self.crew.groups.len()]), scene);
         }
-        restocked
+    }
+
+    /// The question of the base about the fit robots, or that of a robot about those at home of which it does
+    /// not know that they stay out. Whom it never heard is a member like any other of its role.
+    fn question_of(&self, asker: Option<RobotId>, fit: &[RobotId], scene: &Scene) -> Question {
+        let (model, team) = (scene.model, &scene.beliefs.team);
+        let telemetry = scene.telemetry.as_deref();
+        let present = match (asker, telemetry) {
+            (Some(asker), Some(telemetry)) => {
+                let takes_part = |id: &RobotId| !telemetry.knows_out(asker, *id, self.round);
+                self.at_home(team).into_iter().filter(takes_part).collect()
+            }
+            _ => fit.to_vec(),
+        };
+        let member = |id: &RobotId| match telemetry {
+            Some(telemetry) => telemetry.member(asker, &team[id.index()], model),
+            None => team[id.index()].member(&model.needs),
+        };
+        let members = present.iter().filter_map(member).collect();
+        let mut question = question(model, self.round, scene.beliefs.of(None), members);
+        if let Some(asker) = asker {
+            question.asker = Some(asker.0);
+            question.random_seed = seed_of(model, self.round, asker, question.random_seed);
+        }
+        question
     }
 
     /// Sends the groups out, and the unfit robots to rest. The assignment must answer the question that waits
     /// for one.
     pub fn assign(&mut self, assignment: &Assignment, scene: &mut Scene) {
-        let Some(Pending { unfit, .. }) = self.pending.take() else { return };
+        let Some(Pending { unfit, joins, .. }) = self.pending.take() else { return };
         let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
         let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
         if let Some(telemetry) = scene.telemetry.as_deref_mut() {
@@ -115,6 +193,12 @@ impl Mission {
             self.crew.send_out(task, members, scene.model, &scene.beliefs.team);
         }
         unfit.iter().for_each(|(id, cause)| self.crew.send_to_rest(*id, *cause, scene));
+        if let Decider::Robots { retry_s, .. } = scene.model.mission.decides
+            && !joins.is_empty()
+            && !self.crew.groups.iter().any(|group| group.at_work)
+        {
+            self.waits_until = scene.step + scene.model.steps_in(retry_s);
+        }
         self.crew.look_for_guides(&scene.model.mission, &scene.beliefs.team);
     }
 }

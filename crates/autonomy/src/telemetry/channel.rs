@@ -60,6 +60,8 @@ pub struct Sending {
     pub to: Vector,
     /// The time, in seconds.
     pub time_s: f64,
+    /// Whether the same sending reaches somebody else, so that it takes no more of the channel and of energy.
+    pub is_sent: bool,
 }
 
 impl Channel {
@@ -72,7 +74,11 @@ impl Channel {
     /// seconds; `None` if it is lost.
     pub fn send(&mut self, medium: &MediumModel, first: Sending) -> Option<f64> {
         let Resend { times, after_s } = medium.resend;
-        let at = |time: u32| Sending { time_s: first.time_s + f64::from(time) * after_s, ..first };
+        let at = |time: u32| Sending {
+            time_s: first.time_s + f64::from(time) * after_s,
+            is_sent: first.is_sent && time == 0,
+            ..first
+        };
         (0..=times).find_map(|time| self.send_once(medium, at(time)))
     }
 
@@ -84,20 +90,21 @@ impl Channel {
     /// Sends a message once. A lost message occupies the channel, too. Every message has draws of its own,
     /// whether they are used or not.
     fn send_once(&mut self, medium: &MediumModel, sending: Sending) -> Option<f64> {
-        let Sending { seed, ends, at, to, time_s } = sending;
+        let Sending { seed, ends, at, to, time_s, is_sent } = sending;
         let link = self.links.entry(ends).or_default();
         let mut draws = stream_at(seed, Purpose::Message, ends.number(), link.sent);
         let (shadow, loss) = (normal(&mut draws, 0.0, 1.0), draws.random::<f64>());
         link.sent += 1;
-        if medium.energy_per_message > 0.0 {
+        if medium.energy_per_message > 0.0 && !is_sent {
             *self.unpaid.entry(ends.from).or_default() += 1;
         }
         let is_lost = link.loses(medium.loss, loss, &mut draws)
             | (at - to).length().gt(&medium.range)
             | medium.path.is_some_and(|path| shadow > margin(&path, [at, to], &medium.walls))
             | medium.is_blacked_out([at, to], time_s);
-        let sent_s = self.free_from_s.max(time_s) + medium.air_s;
-        if medium.air_s > 0.0 {
+        let air_s = if is_sent { 0.0 } else { medium.air_s };
+        let sent_s = self.free_from_s.max(time_s) + air_s;
+        if air_s > 0.0 {
             self.free_from_s = sent_s;
         }
         (!is_lost).then_some(sent_s + medium.delay_s)
@@ -201,7 +208,7 @@ mod tests {
     /// A message of a robot to the base.
     fn sending(seed: u64, robot: u32, at: Vector, time_s: f64) -> Sending {
         let ends = Ends { from: RobotId(robot), to: None };
-        Sending { seed, ends, at, to: Vector::ZERO, time_s }
+        Sending { seed, ends, at, to: Vector::ZERO, time_s, is_sent: false }
     }
 
     /// Whether each of so many messages from a place, a second apart, is lost.
@@ -257,6 +264,21 @@ mod tests {
         let (_, last) = channel.links().last().unwrap();
         assert_eq!((last.sent, last.heard), (1, 1));
         assert!((last.mean_delay_s().unwrap() - 0.224_48).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_told_to_many_is_sent_and_paid_for_once() {
+        let medium = MediumModel { air_s: 0.5, energy_per_message: 1.0, ..medium() };
+        let mut channel = Channel::default();
+        let mut tell = |to: Option<RobotId>| {
+            let first = sending(1, 0, Vector::ZERO, 1.0);
+            let ends = Ends { from: RobotId(0), to };
+            channel.send(&medium, Sending { ends, is_sent: to.is_some(), ..first }).unwrap()
+        };
+        let heard_s = [None, Some(RobotId(1)), Some(RobotId(2))].map(&mut tell);
+        assert!(heard_s.iter().all(|heard_s| (heard_s - 1.5).abs() < 1e-12), "{heard_s:?}");
+        assert_eq!(channel.take_unpaid(), BTreeMap::from([(RobotId(0), 1)]));
+        assert_eq!(channel.links().count(), 3);
     }
 
     #[test]

@@ -1,17 +1,18 @@
-//! What the base heard: the last that was said of each robot, and all evidence.
+//! What the base heard, and each robot where robots decide: the last that was said of each robot, and all
+//! evidence.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use teaming::evidence::is_named;
-use teaming::{Evidence, Extent, Rating, RobotRound, RoundOutcome};
+use teaming::{Evidence, Extent, MemberOutcome, Rating, RobotRound, RoundOutcome};
 
 use crate::belief::KnownRobot;
 use crate::ids::RobotId;
 use crate::model::Model;
 use crate::report::{Levels, Message, Statement};
 
-/// What the base heard.
+/// What the base or a robot heard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Heard {
     /// What was said of each robot last.
@@ -50,6 +51,11 @@ impl Log {
         Extent { round, reports: reports.len(), ratings: ratings.len(), ledger: ledger.len(), known_since }
     }
 
+    /// What became of a robot in a round, if that was noted.
+    pub(super) fn trip(&self, robot: u32, round: u32) -> Option<RobotRound> {
+        self.ledger.iter().rev().find(|trip| trip.robot == robot && trip.round == round).copied()
+    }
+
     /// All of it, as questions have it.
     pub fn evidence(&self) -> Evidence {
         Evidence {
@@ -83,23 +89,33 @@ impl Heard {
         }
     }
 
-    /// Hears a message to the base.
+    /// Hears a message. Of the field, of who stays out and of what others heard, robots speak among
+    /// themselves.
     pub(super) fn hear(&mut self, message: Message) {
-        match message.report.says {
-            Statement::LevelsAre(levels) => self.hear_levels(Levels { heard_s: message.heard_s, ..levels }),
-            Statement::MateGoes(rating) => self.log.ratings.push(rating),
-            // Of the field robots speak among themselves.
-            Statement::DebrisLies { .. }
-            | Statement::ZoneIs { .. }
-            | Statement::RescueeWaits { .. }
-            | Statement::RescueeIsGone { .. }
-            | Statement::TaskIs { .. }
-            | Statement::WreckLies { .. } => {}
+        if let Statement::LevelsAre(levels) = message.report.says {
+            self.hear_levels(Levels { heard_s: message.heard_s, ..levels });
+        } else if let Statement::MateGoes(rating) = message.report.says {
+            self.log.ratings.push(rating);
         }
     }
 
+    /// When the last that was heard of a robot was sent, in seconds.
+    pub(super) fn said_at_s(&self, robot: usize) -> Option<f64> {
+        self.last[robot].as_ref().map(|said| said.sent_s)
+    }
+
+    /// The newest report of each robot that was heard.
+    pub(super) fn newest(&self) -> impl Iterator<Item = &Levels> {
+        let of = |(robot, last): (u32, &Option<Said>)| {
+            let sent_s = last.as_ref()?.sent_s;
+            let is_it = |report: &&Levels| report.of == robot && report.sent_s.total_cmp(&sent_s).is_eq();
+            self.log.reports.iter().rev().find(is_it)
+        };
+        (0..).zip(&self.last).filter_map(of)
+    }
+
     /// Hears what was said of a robot. What was sent before the last that was heard is evidence only.
-    fn hear_levels(&mut self, report: Levels) {
+    pub(super) fn hear_levels(&mut self, report: Levels) {
         let said = Said { sent_s: report.sent_s, levels: report.levels, needs: report.needs.clone() };
         let of = report.of as usize;
         self.log.reports.push(report);
@@ -141,27 +157,28 @@ impl Heard {
         self.spent_at_start.clone_from(&self.spent);
     }
 
-    /// Notes a round that is over: as the base witnessed it, with the costs that were said.
-    pub(super) fn end_round(&mut self, witnessed: &RoundOutcome, trips: &[Trip], model: &Model, time_s: f64) {
+    /// Notes a round that is over, as far as is known what became of its robots, with the costs that were
+    /// said.
+    pub(super) fn end_round(
+        &mut self,
+        witnessed: &RoundOutcome,
+        known: impl Fn(&MemberOutcome) -> Option<RobotRound>,
+        model: &Model,
+    ) {
         let mut round = witnessed.clone();
         let unit = model.costs.unit;
         for group in &mut round.groups {
-            for member in &mut group.members {
+            group.members.retain_mut(|member| {
+                let Some(trip) = known(member) else { return false };
                 let (id, spec) = (member.id as usize, &model.robots[member.id as usize].spec);
                 let [energy, hp] = [0, 1].map(|level| self.spent[id][level] - self.spent_at_start[id][level]);
                 member.energy = unit.of_percent(energy, spec.energy);
                 member.hp = unit.of_percent(hp, spec.hp);
-                self.log.ledger.push(RobotRound {
-                    robot: member.id,
-                    round: round.round,
-                    left_s: time_s - round.duration_s,
-                    back_s: trips[id].back_s,
-                    rescued: member.rescued,
-                    turned_back: member.turned_back,
-                    rested: trips[id].rested,
-                    lost: member.lost,
-                });
-            }
+                (member.rescued, member.turned_back, member.lost) =
+                    (trip.rescued, trip.turned_back, trip.lost);
+                self.log.ledger.push(trip);
+                true
+            });
             group.energy = group.members.iter().map(|member| member.energy).sum();
             group.hp = group.members.iter().map(|member| member.hp).sum();
         }
@@ -178,6 +195,22 @@ pub fn named(rounds: &[RoundOutcome], known_since: &BTreeMap<u32, u32>) -> Vec<R
         }
     }
     rounds
+}
+
+impl Trip {
+    /// What became of a member of a group in a round that ends now.
+    pub(super) fn ended(&self, member: &MemberOutcome, round: &RoundOutcome, time_s: f64) -> RobotRound {
+        RobotRound {
+            robot: member.id,
+            round: round.round,
+            left_s: time_s - round.duration_s,
+            back_s: self.back_s,
+            rescued: member.rescued,
+            turned_back: member.turned_back,
+            rested: self.rested,
+            lost: member.lost,
+        }
+    }
 }
 
 /// What the base saw of a robot in this round.

@@ -11,6 +11,7 @@ mod gauge;
 mod heard;
 mod known;
 mod lie;
+mod peers;
 mod radio;
 mod speech;
 mod witness;
@@ -20,20 +21,23 @@ use std::collections::BTreeMap;
 use rne_core::NeedVector;
 use scenario::{Lie, Measure};
 use serde::{Deserialize, Serialize};
-use teaming::{Evidence, Member, RoundOutcome};
+use teaming::{Evidence, Member, MemberOutcome, RoundOutcome};
 
 pub use channel::{Channel, Ends, Link};
 pub use heard::{Heard, named};
 pub use known::known;
+pub(crate) use peers::seed_of;
 pub use speech::in_turn;
 
 use crate::belief::KnownRobot;
 use crate::event::EventLog;
+use crate::hash::part;
 use crate::ids::RobotId;
 use crate::model::{Model, TelemetryModel};
 use crate::report::{Message, Statement};
 use heard::Trip;
 use lie::{Told, said_of_mate};
+use peers::Peer;
 use witness::Witnesses;
 
 /// The state of the telemetry.
@@ -55,6 +59,8 @@ pub struct Telemetry {
     trips: Vec<Trip>,
     /// Whether each robot is to take a new name when it is home.
     takes_new_name: Vec<bool>,
+    /// What each robot heard of the others, where robots decide.
+    peers: Vec<Peer>,
 }
 
 /// Where a robot is in the mission.
@@ -105,7 +111,17 @@ impl Telemetry {
             witnesses: Witnesses::of_nobody(robots),
             trips: vec![Trip::default(); robots],
             takes_new_name: vec![false; robots],
+            peers: Peer::all(model),
         }))
+    }
+
+    /// The hash of the state.
+    pub fn digest(&self) -> u128 {
+        let Self { heard, under_way, channel, told, read, is_mute, witnesses, trips, takes_new_name, peers } =
+            self;
+        let base = (heard, under_way, channel, told, read, is_mute, witnesses, trips, takes_new_name);
+        let peers: Vec<_> = peers.iter().map(Peer::to_hash).collect();
+        if peers.is_empty() { part(&base) } else { part(&(base, peers)) }
     }
 
     /// What the base heard.
@@ -161,7 +177,9 @@ impl Telemetry {
         let is_home = |robot: &&KnownRobot| robot.is_able() && (now.presence)(robot).is_home;
         for robot in now.team.iter().filter(is_home) {
             if std::mem::take(&mut self.takes_new_name[robot.id.index()]) {
-                self.heard.known_since.insert(robot.id.0, now.round);
+                self.hearers().for_each(|heard| {
+                    heard.known_since.insert(robot.id.0, now.round);
+                });
             }
         }
         self.report_all(now.team.iter().filter(is_home), now, log);
@@ -170,28 +188,30 @@ impl Telemetry {
 
     /// A question is asked: what it has of the evidence.
     pub(crate) fn note_question(&mut self, round: u32) {
-        let extent = self.heard.log.extent(round, self.heard.known_since.clone());
-        self.heard.extents.push(extent);
+        for heard in self.hearers() {
+            let extent = heard.log.extent(round, heard.known_since.clone());
+            heard.extents.push(extent);
+        }
     }
 
-    /// The evidence of the last question.
-    pub fn evidence(&self, model: &Model) -> Option<Evidence> {
-        let extent = self.heard.extents.last()?;
-        Some(known(model, self.heard.log.evidence().as_of(extent)))
+    /// The evidence of the last question, of the base or of a robot.
+    pub fn evidence(&self, asker: Option<RobotId>, model: &Model) -> Option<Evidence> {
+        let heard = self.heard_by(asker);
+        Some(known(model, heard.log.evidence().as_of(heard.extents.last()?)))
     }
 
-    /// The levels of a robot as they were heard last, in percent.
+    /// The levels of a robot as the base heard them last, in percent.
     pub fn levels(&self, rules: &TelemetryModel, robot: RobotId) -> [f64; 2] {
         self.heard.levels(robot, rules.mean_levels())
     }
 
-    /// A robot as a member of a team that is to be grouped, as it was heard last. What the base hands out and
-    /// what a robot carries, the base knows.
-    pub(crate) fn member(&self, robot: &KnownRobot, model: &Model) -> Option<Member> {
-        let rules = model.telemetry.as_ref()?;
-        let heard = robot.with_levels(self.levels(rules, robot.id));
-        let member = heard.member(&model.needs)?;
-        let Some(said) = self.heard.said_needs(robot.id).filter(|said| !said.is_empty()) else {
+    /// A robot as a member of a team that is to be grouped, as the base heard of it last, or another robot.
+    /// What the base hands out and what a robot carries is known to all.
+    pub(crate) fn member(&self, asker: Option<RobotId>, robot: &KnownRobot, model: &Model) -> Option<Member> {
+        let (rules, heard) = (model.telemetry.as_ref()?, self.heard_by(asker));
+        let robot_heard = robot.with_levels(heard.levels(robot.id, rules.mean_levels()));
+        let member = robot_heard.member(&model.needs)?;
+        let Some(said) = heard.said_needs(robot.id).filter(|said| !said.is_empty()) else {
             return Some(member);
         };
         let mut needs = member.needs.values().to_vec();
@@ -201,7 +221,7 @@ impl Telemetry {
 
     /// A round begins with these groups.
     pub(crate) fn begin_round(&mut self, groups: &[Vec<RobotId>]) {
-        self.heard.begin_round();
+        self.hearers().for_each(Heard::begin_round);
         self.witnesses.begin_round(groups);
         self.trips.fill(Trip::default());
     }
@@ -215,7 +235,7 @@ impl Telemetry {
                 let said = self.tells(rules, robot.id, now.time_s(), Lie::is_about_mates);
                 let said = said.map_or(Some(rating), |lie| said_of_mate(&lie.lie, rating, top_mps, rules));
                 if let Some(rating) = said {
-                    self.send_to_base(Statement::MateGoes(rating), robot, now, log);
+                    self.send(&Statement::MateGoes(rating), robot, now, log);
                 }
             }
         }
@@ -225,14 +245,17 @@ impl Telemetry {
     /// The base closes its books of a round, once the robots at home have reported.
     pub(crate) fn close_round(&mut self, rounds: &[RoundOutcome], model: &Model, step: u64) {
         let time_s = step as f64 * model.dt_s();
-        for witnessed in rounds.iter().skip(self.heard.history.len()) {
-            self.heard.end_round(witnessed, &self.trips, model, time_s);
+        let Self { heard, trips, .. } = self;
+        for round in rounds.iter().skip(heard.history.len()) {
+            let known = |member: &MemberOutcome| Some(trips[member.id as usize].ended(member, round, time_s));
+            heard.end_round(round, known, model);
         }
     }
 
-    /// The rounds as the base heard of them, as far as their robots still have their names.
-    pub fn history(&self) -> Vec<RoundOutcome> {
-        named(&self.heard.history, &self.heard.known_since)
+    /// The rounds as the base heard of them, or a robot, as far as their robots still have their names.
+    pub fn history(&self, asker: Option<RobotId>) -> Vec<RoundOutcome> {
+        let heard = self.heard_by(asker);
+        named(&heard.history, &heard.known_since)
     }
 
     /// The base sees who rests and who is back.
@@ -260,12 +283,13 @@ impl Telemetry {
         now: &Now<'_>,
         rules: &TelemetryModel,
     ) {
-        let (heard, mean) = (&self.heard, rules.mean_levels());
+        let mean = rules.mean_levels();
         let speed_need = now.model.needs.iter().position(|need| need.measures == Measure::Speed);
         for (robot, presence) in now.team.iter().zip(presences) {
             if !presence.is_in_field || !robot.is_able() {
                 continue;
             }
+            let heard = self.peers.get(robot.id.index()).map_or(&self.heard, |peer| &peer.heard);
             self.witnesses.look(robot.id, |mate| {
                 let there = presences[mate.index()];
                 let mps = sighted_mps(robot.id, mate).filter(|_| there.is_in_field)?;

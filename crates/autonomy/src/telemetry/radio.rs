@@ -15,16 +15,13 @@ use crate::model::MediumModel;
 use crate::report::{Message, Report, Speaker, Statement};
 
 impl Telemetry {
-    /// Sends what a robot says to the base. At home it is heard at once, unless the scenario says otherwise.
-    pub(super) fn send_to_base(
-        &mut self,
-        says: Statement,
-        robot: &KnownRobot,
-        now: &Now<'_>,
-        log: &mut EventLog,
-    ) {
-        let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
-        self.carry(report, Ends { from: robot.id, to: None }, now, log);
+    /// Sends what a robot says to the base and, where robots decide, to all others: it is one sending. At
+    /// home it is heard at once, unless the scenario says otherwise.
+    pub(super) fn send(&mut self, says: &Statement, robot: &KnownRobot, now: &Now<'_>, log: &mut EventLog) {
+        let from = Speaker::Robot(robot.id);
+        let report = Report { from, says: says.clone(), at_step: now.step, sd_m: 0.0 };
+        let is_sent = self.carry(report, Ends { from: robot.id, to: None }, false, now, log);
+        self.tell_peers(says.clone(), robot, is_sent, now, log);
     }
 
     /// A robot tells its group-mates what it noticed, as far as it is honest.
@@ -33,26 +30,36 @@ impl Telemetry {
         let Some(report) = self.deceive(report, from, now).filter(|_| rules.medium.is_some()) else { return };
         let is_there = |mate: &&RobotId| **mate != from && now.team[mate.index()].is_able();
         for mate in mates.iter().filter(is_there) {
-            self.carry(report.clone(), Ends { from, to: Some(*mate) }, now, log);
+            self.carry(report.clone(), Ends { from, to: Some(*mate) }, false, now, log);
         }
     }
 
-    /// Carries a report to a mate, or to the base: over the medium, if there is one between them.
-    fn carry(&mut self, report: Report, ends: Ends, now: &Now<'_>, log: &mut EventLog) {
-        let Some(rules) = &now.model.telemetry else { return };
+    /// Carries a report to a mate, or to the base: over the medium, if there is one between them. `is_sent`
+    /// says whether the same sending reaches somebody else. Returns whether it is sent over the medium.
+    pub(super) fn carry(
+        &mut self,
+        report: Report,
+        ends: Ends,
+        is_sent: bool,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) -> bool {
+        let Some(rules) = &now.model.telemetry else { return false };
         let Ends { from: sender, to } = ends;
         if self.is_mute[sender.index()] {
-            return;
+            return false;
         }
         let robot = &now.team[sender.index()];
+        let is_home = |id: RobotId| (now.presence)(&now.team[id.index()]).is_home;
         let is_between = |medium: &&MediumModel| {
-            to.is_some() || !medium.is_perfect_at_home || !(now.presence)(robot).is_home
+            let is_in_field = report.says.is_about_the_field();
+            is_in_field || !medium.is_perfect_at_home || !is_home(sender) || !to.is_none_or(is_home)
         };
         let medium = rules.medium.as_ref().filter(is_between);
         let (at, time_s) = (robot.position, now.time_s());
         let heard_s = medium.map_or(Some(time_s), |medium| {
             let to = to.map_or(medium.base, |mate| now.team[mate.index()].position);
-            self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s })
+            self.channel.send(medium, Sending { seed: rules.seed, ends, at, to, time_s, is_sent })
         });
         let is_deaf = to.is_some_and(|mate| self.is_mute[mate.index()]);
         match heard_s.filter(|_| !is_deaf) {
@@ -60,19 +67,25 @@ impl Telemetry {
                 let (sent_s, by_radio) = (time_s, medium.is_some());
                 self.under_way.push(Message { sender, to, sent_s, heard_s, by_radio, report });
             }
-            None => log.push(Event::Lost { robot: sender, to }),
+            None if is_logged(&report, to) => log.push(Event::Lost { robot: sender, to }),
+            None => {}
         }
+        medium.is_some()
     }
 
     /// The messages that mates hear by now, in the order in which they arrive.
     pub fn heard_by_mates(&mut self, time_s: f64, log: &mut EventLog) -> Vec<Message> {
-        self.arrived(|message| message.to.is_some(), time_s, log)
+        self.arrived(|message| message.to.is_some() && message.report.says.is_about_the_field(), time_s, log)
     }
 
-    /// Lets the base hear the messages that have arrived by now.
+    /// Lets the base hear the messages that have arrived by now, and each robot what is about the team.
     pub(super) fn deliver(&mut self, time_s: f64, log: &mut EventLog) {
-        for message in self.arrived(|message| message.to.is_none(), time_s, log) {
-            self.heard.hear(message);
+        let is_theirs = |message: &Message| message.to.is_none() || !message.report.says.is_about_the_field();
+        for message in self.arrived(is_theirs, time_s, log) {
+            match message.to {
+                Some(robot) => self.peers[robot.index()].hear(message),
+                None => self.heard.hear(message),
+            }
         }
     }
 
@@ -86,11 +99,11 @@ impl Telemetry {
         let has_arrived = |message: &mut Message| message.heard_s <= time_s && is_theirs(message);
         let mut arrived: Vec<Message> = self.under_way.extract_if(.., has_arrived).collect();
         arrived.sort_by(|a, b| a.heard_s.total_cmp(&b.heard_s));
-        for Message { sender, to, sent_s, heard_s, by_radio, .. } in &arrived {
+        for Message { sender, to, sent_s, heard_s, by_radio, report } in &arrived {
             if *by_radio {
                 self.channel.note_heard(Ends { from: *sender, to: *to }, heard_s - sent_s);
             }
-            if heard_s > sent_s {
+            if heard_s > sent_s && is_logged(report, *to) {
                 log.push(Event::Heard { robot: *sender, to: *to, sent_s: *sent_s });
             }
         }
@@ -117,4 +130,10 @@ impl Telemetry {
         let [x, y] = [draws.random::<f32>(), draws.random()];
         Some(Vector::new(low.x + x * (high.x - low.x), low.y + y * (high.y - low.y)))
     }
+}
+
+/// Whether the fate of a message is an event. Of the many by which robots tell all others how they are, links
+/// keep the count.
+fn is_logged(report: &Report, to: Option<RobotId>) -> bool {
+    to.is_none() || report.says.is_about_the_field()
 }

@@ -210,9 +210,8 @@ impl Experiment {
         };
         let ids = |case| policies.iter().enumerate().map(|policy| id(case, policy)).collect();
         let ids = cases.iter().map(ids).collect();
-        let has_reports = |scenario: &Scenario| scenario.goes_by_reports() || scenario.has_sight_errors();
-        let by_reports = has_reports(&base) || cases.iter().any(|case| has_reports(&case.scenario));
-        let metrics = Catalogue::of_cases(&base, by_reports);
+        let all = cases.iter().map(|case| &case.scenario).chain([&base]);
+        let metrics = Catalogue::of_cases(&base, all);
         let plan = plan.checked(&metrics)?;
         let has = |label: &String| policies.iter().any(|policy| policy.label == *label);
         let plan = AnalysisPlan { baseline: plan.baseline.filter(has), ..plan };

@@ -6,7 +6,7 @@ use store::Failure;
 use teaming::{AssignmentError, Deadline, Decision, PolicyError, Session, TrialStart};
 use usar_sim::metrics::TaskTotals;
 use usar_sim::record::{Status, TrialRecord};
-use usar_sim::simulation::{Advance, Ask, AssignError, Checkpoint, InTime, Simulation};
+use usar_sim::simulation::{Advance, AssignError, Checkpoint, InTime, Simulation};
 
 /// A branch checks once in this many steps whether it is to stop.
 const HALT_CHECK_STEPS: u64 = 64;
@@ -122,7 +122,7 @@ pub fn advance_to(
         // `advance` stops at a question, whereas `step` would let the session answer it. The round is
         // checked in between.
         match trial.advance() {
-            Advance::Asks(Ask::Grouping(question)) if question.round == round => return Ok(()),
+            Advance::Asks(ask) if ask.round() == round => return Ok(()),
             Advance::Over(Status::Failed(reason)) => return Err(failed(reason, halt)),
             Advance::Over(status) => {
                 let status = status.name().replace('_', " ");
@@ -183,7 +183,7 @@ impl Branch {
         let is_cut = loop {
             match self.trial.advance() {
                 Advance::Running => look(&self.trial, halt)?,
-                Advance::Asks(Ask::Grouping(question)) if question.round > self.round => break false,
+                Advance::Asks(ask) if ask.round() > self.round => break false,
                 Advance::Asks(_) => return Err(BranchError::NotAsked),
                 Advance::Over(Status::Failed(reason)) => return Err(failed(reason, halt)),
                 Advance::Over(_) => break true,

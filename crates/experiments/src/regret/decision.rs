@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use teaming::{
     Asked, Assignment, Deadline, Decision, Member, PolicyError, Question, Session, TrialStart, assignments,
 };
-use usar_sim::simulation::{Advance, Ask, Simulation};
+use usar_sim::simulation::{Advance, Simulation};
 
 use crate::oracle::{BranchError, Coverage, Evaluation, Objective, Outcome, Survey, play, survey};
 
@@ -100,8 +100,9 @@ pub fn play_decisions(
             Advance::Running => continue,
             Advance::Over(usar_sim::record::Status::Failed(reason)) => return Err(failed(&reason)),
             Advance::Over(_) => return Ok(played),
-            Advance::Asks(Ask::Grouping(question)) => question.clone(),
+            Advance::Asks(_) => trial.question().cloned(),
         };
+        let Some(question) = question else { continue };
         let team = trial.team();
         let asked = Asked::of(&question).knowing(&team);
         let asked = asked.within(&trial).until(plan.halt);

@@ -58,7 +58,8 @@ impl SharedTrials {
         let Player { session, basis } = player;
         let of_seed = self.of_seed(case, setup.seed);
         let known = of_seed.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        if basis == Basis::Question {
+        let robots_decide = !setup.scenario.mission.decides.is_base();
+        if basis == Basis::Question && !robots_decide {
             let deadline = Deadline::when(halt);
             for trial in known {
                 session.reset(&setup.start()).map_err(|error| Fault::of_policy(&error))?;
@@ -69,7 +70,7 @@ impl SharedTrials {
         }
         self.simulated.fetch_add(1, Ordering::Relaxed);
         let trial = run_trial(setup, session, halt)?;
-        if basis == Basis::Undetermined {
+        if basis == Basis::Undetermined || robots_decide {
             return Ok(trial);
         }
         let finished = Arc::new(trial.clone());

@@ -1,8 +1,8 @@
 //! One trial: a scenario and a seed in, a record out, and one interface for decisions.
 //!
 //! [`Simulation::advance`] does a step, or returns the [question](Advance::Asks) how the team is to be
-//! grouped. [`Simulation::assign`] takes the answer. Policies, programs and people all are
-//! [sessions](Session) at this door.
+//! grouped, or what [each robot](Ask::Joins) asks itself. [`Simulation::assign`] and [`Simulation::join`] take
+//! the answers. Policies, programs and people all are [sessions](Session) at this door.
 
 mod charge;
 mod checkpoint;
@@ -20,13 +20,14 @@ use std::ops::Deref;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use teaming::{Asked, AssignmentError, Decision, Member, Question, Session};
+use teaming::{Asked, Assignment, AssignmentError, Decision, Member, Question, Session};
 use thiserror::Error;
 
 use crate::event::Event;
+use crate::ids::RobotId;
 use crate::invariant::{Invariants, Overlaps};
 use crate::mission::Ending;
-use crate::record::{DecisionRecord, HeardRecord, RobotRecord, Status, TaskRecord, TrialRecord};
+use crate::record::{DecisionRecord, HeardRecord, Join, RobotRecord, Status, TaskRecord, TrialRecord};
 use crate::stage::Stage;
 use crate::world::World;
 use scenario::{LayoutError, Scenario};
@@ -44,6 +45,8 @@ pub struct Simulation {
     scratch: Scratch,
     /// The question that waits for an answer, with its history.
     question: Option<Question>,
+    /// What each robot asks itself, where robots decide.
+    joins: Vec<Question>,
     failure: Option<String>,
     invariants: Option<Invariants>,
 }
@@ -64,6 +67,20 @@ pub enum Advance<'s> {
 pub enum Ask<'s> {
     /// How is the team to be grouped? Answered by [`Simulation::assign`].
     Grouping(&'s Question),
+    /// The same, asked by each robot that takes part, as it knows the team: in the order of their ids.
+    /// Answered by [`Simulation::join`]; or by [`Simulation::assign`], which decides over their heads.
+    Joins(&'s [Question]),
+}
+
+impl Ask<'_> {
+    /// The round about which is asked.
+    #[must_use]
+    pub fn round(&self) -> u32 {
+        match self {
+            Self::Grouping(question) => question.round,
+            Self::Joins(questions) => questions.first().map_or(0, |question| question.round),
+        }
+    }
 }
 
 /// An answer that is refused. The question still waits.
@@ -95,7 +112,7 @@ impl Simulation {
     /// A trial in this state, with nothing asked, failed or checked yet.
     fn at(setup: Arc<Setup>, state: State) -> Self {
         let scratch = Scratch::default();
-        Self { setup, state, scratch, question: None, failure: None, invariants: None }
+        Self { setup, state, scratch, question: None, joins: Vec::new(), failure: None, invariants: None }
     }
 
     /// The trial of this scenario and seed that resumes from this state.
@@ -134,7 +151,8 @@ impl Simulation {
         self.scratch.steering = velocities;
     }
 
-    /// The question that waits for an answer.
+    /// The question that waits for an answer. Where robots decide, it is that of the base, which nobody has to
+    /// answer.
     pub fn question(&self) -> Option<&Question> {
         self.question.as_ref()
     }
@@ -157,8 +175,7 @@ impl Simulation {
             self.begin_step(done);
         }
         if self.question.is_some() {
-            let asks = |question| Advance::Asks(Ask::Grouping(question));
-            return self.question.as_ref().map_or(Advance::Running, asks);
+            return self.asks();
         }
         match self.finish_step(done) {
             Ok(()) => Advance::Running,
@@ -167,6 +184,11 @@ impl Simulation {
                 Advance::Over(Status::Failed(reason))
             }
         }
+    }
+
+    fn asks(&self) -> Advance<'_> {
+        let Self { question: Some(question), joins, .. } = self else { return Advance::Running };
+        Advance::Asks(if joins.is_empty() { Ask::Grouping(question) } else { Ask::Joins(joins) })
     }
 
     /// Answers the question that [`Simulation::advance`] asked.
@@ -183,14 +205,56 @@ impl Simulation {
         if idle_carrier && !decision.assignment.groups.iter().flatten().any(can_carry) {
             return Err(AssignError::NobodyCarries);
         }
+        self.group(decision, Vec::new());
+        Ok(())
+    }
+
+    /// Answers what each robot asks itself, in the order of [`Ask::Joins`]: each goes to the group in which it
+    /// sees itself. Groups may so have other sizes than the question says.
+    ///
+    /// # Errors
+    /// Nothing was asked, or a decision does not answer the question of its robot; nothing changes then.
+    pub fn join(&mut self, decisions: &[Decision]) -> Result<(), AssignError> {
+        if self.joins.is_empty() || decisions.len() != self.joins.len() {
+            return Err(AssignError::NotAsked);
+        }
+        let mut assignment = Assignment::new(vec![Vec::new(); self.model().tasks.len()]);
+        let mut joins = Vec::new();
+        for (question, decision) in self.joins.iter().zip(decisions) {
+            let sees = decision.assignment.clone().sorted();
+            sees.check(question)?;
+            let robot = question.asker.unwrap_or_default();
+            match sees.task_of(robot) {
+                Some(task) => assignment.groups[task.index()].push(robot),
+                None => assignment.idle.push(robot),
+            }
+            joins.push(Join { robot, sees, ages_s: self.ages_s(question) });
+        }
+        self.group(Decision::of(assignment), joins);
+        Ok(())
+    }
+
+    /// How old what a robot last heard of the others is, in seconds; none for whom it never heard.
+    fn ages_s(&self, question: &Question) -> Vec<Option<f64>> {
+        let by = RobotId(question.asker.unwrap_or_default());
+        let others = question.members.iter().map(|member| RobotId(member.id)).filter(|id| *id != by);
+        let age = |of| match &self.state.telemetry {
+            Some(telemetry) => telemetry.age_s(by, of, self.time_s()),
+            None => Some(0.0),
+        };
+        others.map(age).collect()
+    }
+
+    /// Sends the groups out, and keeps the decision.
+    fn group(&mut self, decision: Decision, joins: Vec<Join>) {
         let truth = self.truth();
         let (mission, mut scene) = self.state.scene(&self.setup.model);
         mission.assign(&decision.assignment, &mut scene);
+        self.joins.clear();
         if let Some(question) = self.question.take() {
             let question = Question { history: Vec::new(), evidence: None, ..question };
-            self.state.listeners.decisions.push(DecisionRecord { question, decision, truth });
+            self.state.listeners.decisions.push(DecisionRecord { question, decision, truth, joins });
         }
-        Ok(())
     }
 
     /// The members of the question that waits as they really are; none if the question has them so.
@@ -217,19 +281,26 @@ impl Simulation {
             match self.advance_watched(&mut done) {
                 Advance::Running => return None,
                 Advance::Over(status) => return Some(status),
-                Advance::Asks(Ask::Grouping(_)) => self.answer(&mut session),
+                Advance::Asks(_) => self.answer(&mut session),
             }
         }
     }
 
-    /// Lets a session answer the question that waits. Without a usable answer, the trial has failed.
+    /// Lets a session answer what is asked. Without a usable answer, the trial has failed.
     fn answer(&mut self, session: &mut impl Session) {
-        let Some(question) = &self.question else { return };
         let team = self.team();
-        let asked = Asked::of(question).knowing(&team).within(self);
-        let taken = match session.decide(&asked) {
-            Ok(decision) => self.assign(decision).map_err(|error| error.to_string()),
-            Err(error) => Err(error.to_string()),
+        let mut decide = |question| {
+            let asked = Asked::of(question).knowing(&team).within(self);
+            session.decide(&asked).map_err(|error| error.to_string())
+        };
+        let taken = if self.joins.is_empty() {
+            let decision = self.question.as_ref().map(&mut decide).transpose();
+            decision.and_then(|decision| {
+                decision.map_or(Ok(()), |it| self.assign(it).map_err(|error| error.to_string()))
+            })
+        } else {
+            let decisions = self.joins.iter().map(decide).collect::<Result<Vec<_>, String>>();
+            decisions.and_then(|decisions| self.join(&decisions).map_err(|error| error.to_string()))
         };
         if let Err(reason) = taken {
             self.failure = Some(format!("the policy failed: {reason}"));
@@ -370,16 +441,21 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes the mission's question, if it has one, and adds the history of earlier rounds.
+    /// Takes the mission's questions, if it has any, and adds the history of earlier rounds.
     fn take_question(&mut self) {
-        let State { mission, telemetry, beliefs, .. } = &self.state;
-        self.question = mission.question().map(|question| {
-            let rounds = || beliefs.ledger.rounds().to_vec();
-            let history = telemetry.as_ref().map_or_else(rounds, |telemetry| telemetry.history());
-            let model = &self.setup.model;
-            let evidence = telemetry.as_ref().and_then(|telemetry| telemetry.evidence(model));
-            Question { history, evidence, ..question.clone() }
-        });
+        let mission = &self.state.mission;
+        self.question = mission.question().map(|question| self.whole(question));
+        self.joins = mission.joins().iter().map(|question| self.whole(question)).collect();
+    }
+
+    /// A question with the history and the evidence of who asks it.
+    fn whole(&self, question: &Question) -> Question {
+        let State { telemetry, beliefs, .. } = &self.state;
+        let asker = question.asker.map(RobotId);
+        let rounds = || beliefs.ledger.rounds().to_vec();
+        let history = telemetry.as_ref().map_or_else(rounds, |telemetry| telemetry.history(asker));
+        let evidence = telemetry.as_ref().and_then(|telemetry| telemetry.evidence(asker, self.model()));
+        Question { history, evidence, ..question.clone() }
     }
 
     fn check(&mut self) -> Result<(), String> {

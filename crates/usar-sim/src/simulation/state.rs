@@ -370,6 +370,14 @@ impl State {
         part(&(&self.log, timeline, world.changed_by_events(), &self.faults))
     }
 
+    fn part_of_mission(&self) -> u128 {
+        let (mission, is_midway) = (&self.mission, self.is_midway);
+        match mission.talks() {
+            None => part(&(mission.course(), is_midway)),
+            Some(talks) => part(&(mission.course(), is_midway, talks)),
+        }
+    }
+
     /// Adds a link to the hash chain.
     pub(super) fn add_link(&mut self) {
         if self.chain.links().last().is_some_and(|link| link.step == self.step) {
@@ -387,11 +395,11 @@ impl State {
             part(&self.world.lying_debris()),
             part(&(self.world.rescuees.digest(), self.mission.claims.held(), &self.world.loading)),
             part(&(self.beliefs.to_hash(), &self.sent, self.world.changes())),
-            part(&(self.mission.course(), self.is_midway)),
+            self.part_of_mission(),
             part(&self.navigator.to_hash()),
             part(&self.resolver),
             self.part_of_events(),
-            self.telemetry.as_ref().map_or(ABSENT, part),
+            self.telemetry.as_ref().map_or(ABSENT, |telemetry| telemetry.digest()),
         ]
     }
 }

@@ -1,0 +1,203 @@
+//! What each robot heard of the others, where robots decide for themselves, and the question that it asks.
+
+use std::collections::BTreeMap;
+
+use scenario::seed::{Purpose, stream_at};
+use scenario::{Coin, Decider};
+use serde::{Deserialize, Serialize};
+use teaming::{MemberOutcome, RandomSeed, RobotRound, RoundOutcome};
+
+use super::heard::Heard;
+use super::{Ends, Now, Telemetry, in_turn};
+use crate::belief::KnownRobot;
+use crate::event::EventLog;
+use crate::hash::part;
+use crate::ids::RobotId;
+use crate::model::Model;
+use crate::report::{Digest, Levels, Message, Report, Speaker, Statement};
+
+/// What one robot heard.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Peer {
+    pub(super) heard: Heard,
+    /// For each robot, the last round of which it said that it stays out; 0 before.
+    out_of: Vec<u32>,
+    /// What robots said of themselves at the end of rounds.
+    trips: Vec<RobotRound>,
+    /// The hash of all that was heard.
+    digest: u128,
+}
+
+impl Peer {
+    /// One for each robot where robots decide; none where the base does.
+    pub(super) fn all(model: &Model) -> Vec<Self> {
+        let (robots, threshold) = (model.robots.len(), model.mission.low_energy.threshold);
+        let nothing = || Self {
+            heard: Heard::nothing(robots, threshold),
+            out_of: vec![0; robots],
+            trips: Vec::new(),
+            digest: 0,
+        };
+        (0..robots).filter(|_| !model.mission.decides.is_base()).map(|_| nothing()).collect()
+    }
+
+    /// What counts in the hash chain.
+    pub(super) fn to_hash(&self) -> impl Serialize + '_ {
+        (self.digest, self.heard.history.len())
+    }
+
+    pub(super) fn hear(&mut self, message: Message) {
+        self.digest = part(&(self.digest, &message));
+        let (sender, heard_s) = (message.sender, message.heard_s);
+        match message.report.says {
+            Statement::RoundWas(trip) => self.trips.push(trip),
+            Statement::StaysOut { round } => self.out_of[sender.index()] = round,
+            Statement::HasHeard(Digest { round, levels, out }) => {
+                out.iter().for_each(|robot| self.out_of[robot.index()] = round);
+                levels.into_iter().for_each(|levels| self.hear_anew(Levels { heard_s, ..levels }));
+            }
+            _ => self.heard.hear(message),
+        }
+    }
+
+    /// Hears at second hand what was said of a robot, if it is newer than what was heard before.
+    fn hear_anew(&mut self, levels: Levels) {
+        if self.heard.said_at_s(levels.of as usize).is_none_or(|said_s| said_s < levels.sent_s) {
+            self.heard.hear_levels(levels);
+        }
+    }
+
+    /// Whether a robot is known to stay out of a round.
+    fn is_out(&self, robot: RobotId, round: u32) -> bool {
+        self.out_of[robot.index()] == round
+    }
+
+    /// Notes the rounds that are over: what a robot saw of its own group, and what others said of
+    /// themselves.
+    fn close(&mut self, robot: RobotId, base: &Heard, rounds: &[RoundOutcome], model: &Model) {
+        let Self { heard, trips, .. } = self;
+        for round in rounds.iter().skip(heard.history.len()) {
+            let is_own = |member: &MemberOutcome| {
+                let of = |id: u32| round.groups.iter().position(|g| g.members.iter().any(|m| m.id == id));
+                of(member.id) == of(robot.0)
+            };
+            let told = |id: u32| trips.iter().find(|trip| (trip.robot, trip.round) == (id, round.round));
+            let known = |member: &MemberOutcome| {
+                let saw = is_own(member).then(|| base.log.trip(member.id, round.round));
+                saw.unwrap_or_else(|| told(member.id).copied())
+            };
+            heard.end_round(round, known, model);
+        }
+        let closed = heard.history.len();
+        trips.retain(|trip| trip.round as usize > closed);
+    }
+}
+
+impl Telemetry {
+    /// What the base heard, or a robot.
+    pub(super) fn heard_by(&self, hearer: Option<RobotId>) -> &Heard {
+        hearer.and_then(|robot| self.peers.get(robot.index())).map_or(&self.heard, |peer| &peer.heard)
+    }
+
+    /// Everybody who hears.
+    pub(super) fn hearers(&mut self) -> impl Iterator<Item = &mut Heard> {
+        self.peers.iter_mut().map(|peer| &mut peer.heard).chain([&mut self.heard])
+    }
+
+    /// Whether a robot knows that another stays out of a round.
+    pub(crate) fn knows_out(&self, by: RobotId, robot: RobotId, round: u32) -> bool {
+        self.peers[by.index()].is_out(robot, round)
+    }
+
+    /// How old what a robot last heard of another is, in seconds; none if it never heard of it.
+    pub fn age_s(&self, by: RobotId, robot: RobotId, time_s: f64) -> Option<f64> {
+        Some(time_s - self.heard_by(Some(by)).said_at_s(robot.index())?)
+    }
+
+    /// A robot knows what it reads of itself, whatever it says.
+    pub(super) fn know_oneself(&mut self, robot: RobotId, said: &Levels, now: &Now<'_>) {
+        let Some(read) = self.read[robot.index()].filter(|_| !self.peers.is_empty()) else { return };
+        let says = Statement::LevelsAre(Levels { levels: read, needs: BTreeMap::new(), ..said.clone() });
+        let report = Report { from: Speaker::Robot(robot), says, at_step: now.step, sd_m: 0.0 };
+        let (to, sent_s) = (Some(robot), now.time_s());
+        self.under_way.push(Message { sender: robot, to, sent_s, heard_s: sent_s, by_radio: false, report });
+    }
+
+    /// Robots say what became of them in the round that is over.
+    pub(crate) fn tell_rounds(&mut self, round: &RoundOutcome, now: &Now<'_>, log: &mut EventLog) {
+        let time_s = now.time_s();
+        for member in round.groups.iter().flat_map(|group| &group.members) {
+            let robot = &now.team[member.id as usize];
+            if robot.is_able() && (now.presence)(robot).is_home {
+                let trip = self.trips[robot.id.index()].ended(member, round, time_s);
+                self.tell_peers(Statement::RoundWas(trip), robot, false, now, log);
+            }
+        }
+        self.deliver(time_s, log);
+    }
+
+    /// Robots that must rest say that they stay out of the round.
+    pub(crate) fn tell_who_stays(&mut self, who: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
+        for robot in who.iter().map(|id| &now.team[id.index()]) {
+            self.tell_peers(Statement::StaysOut { round: now.round }, robot, false, now, log);
+        }
+        self.deliver(now.time_s(), log);
+    }
+
+    /// Robots at home say what they have heard of all.
+    pub(crate) fn exchange(&mut self, now: &Now<'_>, log: &mut EventLog) {
+        let is_home = |robot: &&KnownRobot| robot.is_able() && (now.presence)(robot).is_home;
+        let digests: Vec<(&KnownRobot, Digest)> = in_turn(now.team.iter().filter(is_home), now)
+            .into_iter()
+            .map(|robot| (robot, self.digest_of(robot, now)))
+            .collect();
+        for (robot, digest) in digests {
+            self.tell_peers(Statement::HasHeard(digest), robot, false, now, log);
+        }
+        self.deliver(now.time_s(), log);
+    }
+
+    fn digest_of(&self, robot: &KnownRobot, now: &Now<'_>) -> Digest {
+        let peer = &self.peers[robot.id.index()];
+        let others = peer.heard.newest().filter(|report| report.of != robot.id.0).cloned();
+        let is_out = |id: &RobotId| peer.is_out(*id, now.round);
+        let out = now.team.iter().map(|robot| robot.id).filter(is_out).collect();
+        Digest { round: now.round, levels: others.collect(), out }
+    }
+
+    /// A robot tells all others. `is_sent` says whether the same message went to the base before.
+    pub(super) fn tell_peers(
+        &mut self,
+        says: Statement,
+        robot: &KnownRobot,
+        mut is_sent: bool,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) {
+        let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
+        let is_there = |mate: &&KnownRobot| mate.id != robot.id && mate.is_able();
+        let there = if self.peers.is_empty() { &[][..] } else { now.team };
+        for mate in there.iter().filter(is_there) {
+            let ends = Ends { from: robot.id, to: Some(mate.id) };
+            is_sent |= self.carry(report.clone(), ends, is_sent, now, log);
+        }
+    }
+
+    /// Robots close their books of the rounds that are over.
+    pub(crate) fn close_rounds_of_peers(&mut self, rounds: &[RoundOutcome], model: &Model) {
+        for (robot, peer) in (0..).map(RobotId).zip(&mut self.peers) {
+            peer.close(robot, &self.heard, rounds, model);
+        }
+    }
+}
+
+/// The seed of a robot's draws in a round.
+pub(crate) fn seed_of(model: &Model, round: u32, robot: RobotId, base: RandomSeed) -> RandomSeed {
+    match model.mission.decides {
+        Decider::Robots { coin: Coin::Common, .. } | Decider::Base => base,
+        Decider::Robots { coin: Coin::Own, .. } => {
+            let draws = stream_at(model.seed, Purpose::Grouping, u64::from(round), 1 + u64::from(robot.0));
+            RandomSeed(draws.get_seed())
+        }
+    }
+}
