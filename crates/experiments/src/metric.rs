@@ -150,7 +150,7 @@ const OF_JOINS: &[Declaration] = &[
         .means("The share of pairs of robots that saw the same groups when they decided, on average over rounds."),
     whole("sizes_missed", "", joins::sizes_missed).lower()
         .means("Robots above the number that the base would have sent to their task, on average over rounds."),
-    whole("belief_age_s", "s", joins::belief_age).lower()
+    whole("belief_age", "s", joins::belief_age).lower()
         .means("How old what robots had last heard of each other was when they decided, on average."),
     whole("never_heard", "", joins::never_heard).lower()
         .means("The share of other robots of which a robot had never heard when it decided, on average."),
