@@ -107,8 +107,8 @@ fn play(row: &Row) -> bool {
     let is_done = shell(&row.command);
     if is_done {
         let date = Command::new("date").arg("+%F").output().expect("date runs").stdout;
-        let minutes = minutes_of_children().zip(before).map(|(after, before)| (after - before).max(0.1));
-        let minutes = minutes.filter(|_| is_new).map(|minutes| (10.0 * minutes).round() / 10.0);
+        let minutes = minutes_of_children().zip(before).map(|(after, before)| (after - before).max(0.01));
+        let minutes = minutes.filter(|_| is_new).map(|minutes| (100.0 * minutes).round() / 100.0);
         results::mark(&row.output, String::from_utf8(date).expect("a date").trim(), minutes);
     }
     is_done
