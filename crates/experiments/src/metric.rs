@@ -147,9 +147,9 @@ const OF_REPORTS: &[Declaration] = &[
 #[rustfmt::skip]
 const OF_JOINS: &[Declaration] = &[
     whole("agreement", "", joins::agreement).higher()
-        .means("The share of pairs of robots that saw the same groups when they decided, on average over rounds."),
+        .means("The share of pairs of robots that saw the same groups, on average over decisions."),
     whole("sizes_missed", "", joins::sizes_missed).lower()
-        .means("Robots above the number that the base would have sent to their task, on average over rounds."),
+        .means("Robots above the number that the base would have sent to their task, on average."),
     whole("belief_age", "s", joins::belief_age).lower()
         .means("How old what robots had last heard of each other was when they decided, on average."),
     whole("never_heard", "", joins::never_heard).lower()
@@ -354,8 +354,8 @@ impl Deref for Catalogue {
 }
 
 impl Catalogue {
-    /// All metrics of a scenario: of its tasks, in its words; those of reports where the base goes by reports,
-    /// or robots see rescuees with errors; those of joins where robots decide.
+    /// All metrics of a scenario: of its tasks, in its words; those of reports where the base goes by
+    /// reports, or robots see rescuees with errors; those of joins where robots decide.
     pub fn of(scenario: &Scenario) -> Self {
         Self::of_cases(scenario, std::iter::once(scenario))
     }

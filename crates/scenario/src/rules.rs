@@ -159,8 +159,8 @@ pub enum Decider {
     /// The base, for all robots, by what it heard of them. The default.
     #[default]
     Base,
-    /// Each robot for itself, by what it knows of the others: it groups the team as the policy says, and joins
-    /// the group that it would be in. What robots say of themselves, they say to all.
+    /// Each robot for itself, by what it knows of the others: it groups the team as the policy says, and
+    /// joins the group that it would be in. What robots say of themselves, they say to all.
     Robots {
         /// How robots come to know of each other before they decide.
         #[serde(default)]

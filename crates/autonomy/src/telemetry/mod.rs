@@ -34,7 +34,7 @@ use crate::event::EventLog;
 use crate::hash::part;
 use crate::ids::RobotId;
 use crate::model::{Model, TelemetryModel};
-use crate::report::{Message, Statement};
+use crate::report::{Message, Report, Speaker, Statement};
 use heard::Trip;
 use lie::{Told, said_of_mate};
 use peers::Peer;
@@ -93,6 +93,11 @@ pub struct Now<'n> {
 impl Now<'_> {
     fn time_s(&self) -> f64 {
         self.step as f64 * self.model.dt_s()
+    }
+
+    /// What a robot says now.
+    fn report(&self, robot: RobotId, says: Statement) -> Report {
+        Report { from: Speaker::Robot(robot), says, at_step: self.step, sd_m: 0.0 }
     }
 }
 
@@ -235,7 +240,7 @@ impl Telemetry {
                 let said = self.tells(rules, robot.id, now.time_s(), Lie::is_about_mates);
                 let said = said.map_or(Some(rating), |lie| said_of_mate(&lie.lie, rating, top_mps, rules));
                 if let Some(rating) = said {
-                    self.send(&Statement::MateGoes(rating), robot, now, log);
+                    self.send(Statement::MateGoes(rating), robot, now, log);
                 }
             }
         }

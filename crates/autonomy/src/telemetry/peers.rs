@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use teaming::{MemberOutcome, RandomSeed, RobotRound, RoundOutcome};
 
 use super::heard::Heard;
-use super::{Ends, Now, Telemetry, in_turn};
+use super::radio::Parcel;
+use super::{Now, Telemetry, in_turn};
 use crate::belief::KnownRobot;
 use crate::event::EventLog;
 use crate::hash::part;
@@ -118,7 +119,7 @@ impl Telemetry {
     pub(super) fn know_oneself(&mut self, robot: RobotId, said: &Levels, now: &Now<'_>) {
         let Some(read) = self.read[robot.index()].filter(|_| !self.peers.is_empty()) else { return };
         let says = Statement::LevelsAre(Levels { levels: read, needs: BTreeMap::new(), ..said.clone() });
-        let report = Report { from: Speaker::Robot(robot), says, at_step: now.step, sd_m: 0.0 };
+        let report = now.report(robot, says);
         let (to, sent_s) = (Some(robot), now.time_s());
         self.under_way.push(Message { sender: robot, to, sent_s, heard_s: sent_s, by_radio: false, report });
     }
@@ -130,7 +131,7 @@ impl Telemetry {
             let robot = &now.team[member.id as usize];
             if robot.is_able() && (now.presence)(robot).is_home {
                 let trip = self.trips[robot.id.index()].ended(member, round, time_s);
-                self.tell_peers(Statement::RoundWas(trip), robot, false, now, log);
+                self.tell_peers(&now.report(robot.id, Statement::RoundWas(trip)), false, now, log);
             }
         }
         self.deliver(time_s, log);
@@ -138,8 +139,9 @@ impl Telemetry {
 
     /// Robots that must rest say that they stay out of the round.
     pub(crate) fn tell_who_stays(&mut self, who: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
-        for robot in who.iter().map(|id| &now.team[id.index()]) {
-            self.tell_peers(Statement::StaysOut { round: now.round }, robot, false, now, log);
+        for robot in who {
+            let says = Statement::StaysOut { round: now.round };
+            self.tell_peers(&now.report(*robot, says), false, now, log);
         }
         self.deliver(now.time_s(), log);
     }
@@ -152,7 +154,7 @@ impl Telemetry {
             .map(|robot| (robot, self.digest_of(robot, now)))
             .collect();
         for (robot, digest) in digests {
-            self.tell_peers(Statement::HasHeard(digest), robot, false, now, log);
+            self.tell_peers(&now.report(robot.id, Statement::HasHeard(digest)), false, now, log);
         }
         self.deliver(now.time_s(), log);
     }
@@ -165,21 +167,19 @@ impl Telemetry {
         Digest { round: now.round, levels: others.collect(), out }
     }
 
-    /// A robot tells all others. `is_sent` says whether the same message went to the base before.
+    /// A robot tells all others, where robots decide. `is_sent` says whether the same sending reaches the
+    /// base.
     pub(super) fn tell_peers(
         &mut self,
-        says: Statement,
-        robot: &KnownRobot,
+        report: &Report,
         mut is_sent: bool,
         now: &Now<'_>,
         log: &mut EventLog,
     ) {
-        let report = Report { from: Speaker::Robot(robot.id), says, at_step: now.step, sd_m: 0.0 };
-        let is_there = |mate: &&KnownRobot| mate.id != robot.id && mate.is_able();
         let there = if self.peers.is_empty() { &[][..] } else { now.team };
-        for mate in there.iter().filter(is_there) {
-            let ends = Ends { from: robot.id, to: Some(mate.id) };
-            is_sent |= self.carry(report.clone(), ends, is_sent, now, log);
+        let hears = |mate: &&KnownRobot| report.from != Speaker::Robot(mate.id) && mate.is_able();
+        for mate in there.iter().filter(hears) {
+            is_sent |= self.carry(Parcel { report, to: Some(mate.id), is_sent }, now, log);
         }
     }
 

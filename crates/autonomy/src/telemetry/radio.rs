@@ -14,14 +14,24 @@ use crate::ids::RobotId;
 use crate::model::MediumModel;
 use crate::report::{Message, Report, Speaker, Statement};
 
+/// A report to one hearer.
+#[derive(Clone, Copy)]
+pub(super) struct Parcel<'r> {
+    /// The report of a robot.
+    pub(super) report: &'r Report,
+    /// Who is to hear it: a robot, or the base.
+    pub(super) to: Option<RobotId>,
+    /// Whether the same sending reaches somebody else.
+    pub(super) is_sent: bool,
+}
+
 impl Telemetry {
     /// Sends what a robot says to the base and, where robots decide, to all others: it is one sending. At
     /// home it is heard at once, unless the scenario says otherwise.
-    pub(super) fn send(&mut self, says: &Statement, robot: &KnownRobot, now: &Now<'_>, log: &mut EventLog) {
-        let from = Speaker::Robot(robot.id);
-        let report = Report { from, says: says.clone(), at_step: now.step, sd_m: 0.0 };
-        let is_sent = self.carry(report, Ends { from: robot.id, to: None }, false, now, log);
-        self.tell_peers(says.clone(), robot, is_sent, now, log);
+    pub(super) fn send(&mut self, says: Statement, robot: &KnownRobot, now: &Now<'_>, log: &mut EventLog) {
+        let report = now.report(robot.id, says);
+        let is_sent = self.carry(Parcel { report: &report, to: None, is_sent: false }, now, log);
+        self.tell_peers(&report, is_sent, now, log);
     }
 
     /// A robot tells its group-mates what it noticed, as far as it is honest.
@@ -30,22 +40,16 @@ impl Telemetry {
         let Some(report) = self.deceive(report, from, now).filter(|_| rules.medium.is_some()) else { return };
         let is_there = |mate: &&RobotId| **mate != from && now.team[mate.index()].is_able();
         for mate in mates.iter().filter(is_there) {
-            self.carry(report.clone(), Ends { from, to: Some(*mate) }, false, now, log);
+            self.carry(Parcel { report: &report, to: Some(*mate), is_sent: false }, now, log);
         }
     }
 
-    /// Carries a report to a mate, or to the base: over the medium, if there is one between them. `is_sent`
-    /// says whether the same sending reaches somebody else. Returns whether it is sent over the medium.
-    pub(super) fn carry(
-        &mut self,
-        report: Report,
-        ends: Ends,
-        is_sent: bool,
-        now: &Now<'_>,
-        log: &mut EventLog,
-    ) -> bool {
-        let Some(rules) = &now.model.telemetry else { return false };
-        let Ends { from: sender, to } = ends;
+    /// Carries a report to a mate, or to the base: over the medium, if there is one between them. Returns
+    /// whether it is sent over the medium.
+    pub(super) fn carry(&mut self, parcel: Parcel<'_>, now: &Now<'_>, log: &mut EventLog) -> bool {
+        let Parcel { report, to, is_sent } = parcel;
+        let (Speaker::Robot(sender), Some(rules)) = (report.from, &now.model.telemetry) else { return false };
+        let ends = Ends { from: sender, to };
         if self.is_mute[sender.index()] {
             return false;
         }
@@ -65,9 +69,10 @@ impl Telemetry {
         match heard_s.filter(|_| !is_deaf) {
             Some(heard_s) => {
                 let (sent_s, by_radio) = (time_s, medium.is_some());
+                let report = report.clone();
                 self.under_way.push(Message { sender, to, sent_s, heard_s, by_radio, report });
             }
-            None if is_logged(&report, to) => log.push(Event::Lost { robot: sender, to }),
+            None if is_logged(report, to) => log.push(Event::Lost { robot: sender, to }),
             None => {}
         }
         medium.is_some()

@@ -54,7 +54,7 @@ impl Telemetry {
         let robots = in_turn(robots, now);
         let reports: Vec<Levels> = robots.iter().map(|robot| self.levels_said(robot, rules, now)).collect();
         for (robot, report) in robots.iter().zip(&reports) {
-            self.send(&Statement::LevelsAre(report.clone()), robot, now, log);
+            self.send(Statement::LevelsAre(report.clone()), robot, now, log);
             self.know_oneself(robot.id, report, now);
         }
         for (robot, report) in robots.into_iter().zip(reports) {
@@ -62,7 +62,7 @@ impl Telemetry {
                 self.tells(rules, robot.id, now.time_s(), |lie| matches!(lie, Lie::Impersonate { .. }));
             if let Some(Lie::Impersonate { name }) = other.map(|lie| &lie.lie) {
                 let false_one = Levels { of: *name, by: *name, ..report };
-                self.send(&Statement::LevelsAre(false_one), robot, now, log);
+                self.send(Statement::LevelsAre(false_one), robot, now, log);
             }
         }
     }

@@ -1,8 +1,8 @@
 //! One trial: a scenario and a seed in, a record out, and one interface for decisions.
 //!
 //! [`Simulation::advance`] does a step, or returns the [question](Advance::Asks) how the team is to be
-//! grouped, or what [each robot](Ask::Joins) asks itself. [`Simulation::assign`] and [`Simulation::join`] take
-//! the answers. Policies, programs and people all are [sessions](Session) at this door.
+//! grouped, or what [each robot](Ask::Joins) asks itself. [`Simulation::assign`] and [`Simulation::join`]
+//! take the answers. Policies, programs and people all are [sessions](Session) at this door.
 
 mod charge;
 mod checkpoint;
@@ -151,8 +151,8 @@ impl Simulation {
         self.scratch.steering = velocities;
     }
 
-    /// The question that waits for an answer. Where robots decide, it is that of the base, which nobody has to
-    /// answer.
+    /// The question that waits for an answer. Where robots decide, it is that of the base, which nobody has
+    /// to answer.
     pub fn question(&self) -> Option<&Question> {
         self.question.as_ref()
     }
@@ -209,8 +209,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Answers what each robot asks itself, in the order of [`Ask::Joins`]: each goes to the group in which it
-    /// sees itself. Groups may so have other sizes than the question says.
+    /// Answers what each robot asks itself, in the order of [`Ask::Joins`]: each goes to the group in which
+    /// it sees itself. Groups may so have other sizes than the question says.
     ///
     /// # Errors
     /// Nothing was asked, or a decision does not answer the question of its robot; nothing changes then.
