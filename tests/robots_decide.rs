@@ -2,11 +2,13 @@
 
 use experiments::experiment::with_settings;
 use rayon::prelude::*;
-use scenario::Scenario;
+use scenario::{AtHome, Coin, Decider, Exchange, Loss, MediumRules, Scenario};
 use teaming::{Assignment, Decision, Question};
 use usar_sim::event::Event;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::{Advance, Ask, Simulation};
+
+use xtask::journeys::{Journeys, STANDSTILL_S};
 
 use crate::support::{policy, root};
 
@@ -159,4 +161,35 @@ fn a_team_of_which_nobody_goes_asks_again_later() {
     }
     assert_eq!(asked_s, [0.0, 20.0, 40.0, 60.0, 80.0]);
     assert_eq!(trial.finish().status.name(), "completed");
+}
+
+/// Random missions over random media: no invariant is violated, and nobody stands still for good.
+#[test]
+fn in_random_worlds_robots_decide_soundly() {
+    let some = std::env::var("RANDOM_WORLDS").ok().and_then(|count| count.parse().ok()).unwrap_or(12);
+    (0..some).into_par_iter().for_each(|number: u64| {
+        let seed = 2 * number + 1; // odd ones are missions
+        let mut file = (*xtask::worlds::world(seed)).clone();
+        file.duration_s = 100.0;
+        let pick = |of: u64| (seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32) % of;
+        let by = match pick(3) {
+            0 => Exchange::Alone,
+            more => Exchange::Gossip { exchanges: more as u32, every_s: [0.0, 0.5, 2.0][pick(3) as usize] },
+        };
+        file.mission.decides = Decider::Robots { by, coin: Coin::Own, retry_s: 10.0 };
+        let lost = [0.0, 0.3, 0.7, 1.0][pick(4) as usize];
+        file.medium = (pick(5) > 0).then(|| MediumRules {
+            range_m: Some([4.0, 10.0, 100.0][pick(3) as usize]),
+            loss: Loss::GilbertElliott { p: 0.5, r: 0.5, good: lost, bad: lost },
+            delay_s: [0.0, 0.3, 5.0][pick(7) as usize % 3],
+            kbps: (pick(2) == 0).then_some(20.0),
+            at_home: [AtHome::Medium, AtHome::Perfect][pick(2) as usize],
+            ..MediumRules::default()
+        });
+        let scenario = Scenario::try_from(file).unwrap_or_else(|wrong| panic!("world {seed}: {wrong:?}"));
+        let policy = ["HP_DIS", "RANDOM", "RNE"][pick(3) as usize];
+        let journeys = Journeys::run(&scenario, policy, seed);
+        let journeys = journeys.unwrap_or_else(|reason| panic!("world {seed}, {policy}: {reason}"));
+        assert!(journeys.standstill_s <= STANDSTILL_S, "world {seed}: {} s", journeys.standstill_s);
+    });
 }
