@@ -95,12 +95,12 @@ fn what_a_robot_did_not_hear_changes_nothing_for_it() {
     };
     let mut unaware = 0;
     for (before, after) in before.iter().zip(&after) {
-        let asker = before.asker.unwrap() as usize;
-        if asker == 0 || is_far(asker) {
-            assert_eq!(before, after, "robot {asker} could not hear the lie of robot 0, or is it");
+        let robot = before.asker.unwrap() as usize;
+        if robot == 0 || is_far(robot) {
+            assert_eq!(before, after, "robot {robot} could not hear the lie of robot 0, or is it");
             unaware += 1;
         } else {
-            assert_ne!(before.members[0], after.members[0], "robot {asker} heard robot 0");
+            assert_ne!(before.members[0], after.members[0], "robot {robot} heard robot 0");
         }
     }
     assert!(unaware > 1 && unaware < before.len(), "{unaware} of {}", before.len());

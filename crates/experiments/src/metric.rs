@@ -357,19 +357,19 @@ impl Catalogue {
     /// All metrics of a scenario: of its tasks, in its words; those of reports where the base goes by
     /// reports, or robots see rescuees with errors; those of joins where robots decide.
     pub fn of(scenario: &Scenario) -> Self {
-        Self::of_cases(scenario, std::iter::once(scenario))
+        Self::of_cases(scenario, &[scenario])
     }
 
     /// The same for a sweep over a scenario with these cases.
-    pub(crate) fn of_cases<'c>(base: &Scenario, cases: impl Iterator<Item = &'c Scenario> + Clone) -> Self {
+    pub(crate) fn of_cases(base: &Scenario, cases: &[&Scenario]) -> Self {
         let mut all = Self::with(&task_names(base), &base.words);
         let mut more = |them: &[Declaration]| {
-            all.metrics.extend(them.iter().flat_map(|of| of.metrics(&[], &base.words)))
+            all.metrics.extend(them.iter().flat_map(|of| of.metrics(&[], &base.words)));
         };
-        if cases.clone().any(|case| case.goes_by_reports() || case.has_sight_errors()) {
+        if cases.iter().any(|case| case.goes_by_reports() || case.has_sight_errors()) {
             more(OF_REPORTS);
         }
-        if cases.clone().any(|case| !case.mission.decides.is_base()) {
+        if cases.iter().any(|case| !case.mission.decides.is_base()) {
             more(OF_JOINS);
         }
         all

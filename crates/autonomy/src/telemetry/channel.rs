@@ -87,21 +87,24 @@ impl Channel {
         std::mem::take(&mut self.unpaid)
     }
 
-    /// Sends a message once. A lost message occupies the channel, too. Every message has draws of its own,
-    /// whether they are used or not.
+    /// Sends a message once. A lost message occupies the channel, too. Every message has draws of its own.
     fn send_once(&mut self, medium: &MediumModel, sending: Sending) -> Option<f64> {
         let Sending { seed, ends, at, to, time_s, is_sent } = sending;
         let link = self.links.entry(ends).or_default();
-        let mut draws = stream_at(seed, Purpose::Message, ends.number(), link.sent);
-        let (shadow, loss) = (normal(&mut draws, 0.0, 1.0), draws.random::<f64>());
+        let number = link.sent;
         link.sent += 1;
         if medium.energy_per_message > 0.0 && !is_sent {
             *self.unpaid.entry(ends.from).or_default() += 1;
         }
-        let is_lost = link.loses(medium.loss, loss, &mut draws)
-            | (at - to).length().gt(&medium.range)
-            | medium.path.is_some_and(|path| shadow > margin(&path, [at, to], &medium.walls))
-            | medium.is_blacked_out([at, to], time_s);
+        let is_drawn = medium.path.is_some() || medium.loss != Loss::None;
+        let is_lost_by_chance = is_drawn && {
+            let mut draws = stream_at(seed, Purpose::Message, ends.number(), number);
+            let (shadow, loss) = (normal(&mut draws, 0.0, 1.0), draws.random::<f64>());
+            link.loses(medium.loss, loss, &mut draws)
+                | medium.path.is_some_and(|path| shadow > margin(&path, [at, to], &medium.walls))
+        };
+        let is_lost =
+            is_lost_by_chance || (at - to).length() > medium.range || medium.is_blacked_out([at, to], time_s);
         let air_s = if is_sent { 0.0 } else { medium.air_s };
         let sent_s = self.free_from_s.max(time_s) + air_s;
         if air_s > 0.0 {

@@ -210,8 +210,8 @@ impl Experiment {
         };
         let ids = |case| policies.iter().enumerate().map(|policy| id(case, policy)).collect();
         let ids = cases.iter().map(ids).collect();
-        let all = cases.iter().map(|case| &case.scenario).chain([&base]);
-        let metrics = Catalogue::of_cases(&base, all);
+        let all: Vec<&Scenario> = cases.iter().map(|case| &case.scenario).chain([&base]).collect();
+        let metrics = Catalogue::of_cases(&base, &all);
         let plan = plan.checked(&metrics)?;
         let has = |label: &String| policies.iter().any(|policy| policy.label == *label);
         let plan = AnalysisPlan { baseline: plan.baseline.filter(has), ..plan };

@@ -9,7 +9,7 @@ use experiments::regret::OutcomeLog;
 use experiments::why::{Directed, OtherChoice, directed, exchanges, other_choices};
 use serde::Serialize;
 use teaming::{Asked, Assignment, Decision, Member, Question, assignments};
-use usar_sim::record::{DecisionRecord, Status};
+use usar_sim::record::{DecisionRecord, Join, Status};
 use usar_sim::simulation::Simulation;
 
 use super::oracle::decision_key;
@@ -79,6 +79,9 @@ struct Account<'a> {
     /// Complete, with the history of the rounds before.
     question: Question,
     decision: &'a Decision,
+    /// How each robot decided, where robots did.
+    #[serde(skip_serializing_if = "<[Join]>::is_empty")]
+    joins: &'a [Join],
     /// The members as they really were.
     team: &'a [Member],
     /// The trust measure of `directed` and of the robot's exchanges; absent if the policy has none.
@@ -186,6 +189,7 @@ impl Arguments {
             oracle: self.oracle(asked, question, &decision.assignment)?,
             robot: story.transpose()?,
             decision,
+            joins: &record.joins,
             team: record.team(),
             question: full,
         })

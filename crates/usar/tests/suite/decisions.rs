@@ -216,6 +216,18 @@ fn why_tells_in_sentences_and_names_what_it_cannot_find() {
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
+    let robots = "why short.ron --seed 2 --robot 3 --at 30 --set mission.decides=Robots()";
+    let text = succeeds(&usar(here, robots));
+    for part in [
+        "and each robot decided by RNE: 66 of 66 pairs saw the same groups",
+        "It saw the groups hard ",
+        "It had heard of the others so long ago: 0: 0.0 s, 1: 0.0 s, 2: 0.0 s, 4: 0.0 s",
+    ] {
+        assert!(text.contains(part), "{part:?} is not in:\n{text}");
+    }
+    let forked =
+        succeeds(&usar(here, "fork short.ron --seed 2 --instead DIS --set mission.decides=Robots()"));
+    assert!(forked.contains("DIS"), "{forked}");
     refused(here, 2, "why short.ron --round 99", &["--round: no round 99 began up to"]);
     refused(here, 2, "why short.ron --robot 99", &["--robot: must be below 12, found 99"]);
     refused(here, 2, "why short.ron --robot 1 --at 1e9", &["--at: must be from 0 to"]);

@@ -5,6 +5,7 @@ use experiments::why::{Directed, Exchange, OtherChoice};
 use rne_core::RelativeNeedsEntropy;
 use teaming::decision::{Ranking, RneAccount};
 use teaming::{Account as PolicyAccount, LevelId, Member, Question};
+use usar_sim::record::Join;
 use usar_sim::robot::{ENERGY, HP};
 
 use super::robot::{RobotStory, in_words};
@@ -21,8 +22,12 @@ const ROUNDING: f64 = 1e-9;
 pub(super) fn text(account: &Account, asked: &Trial) -> Report {
     let Account { question, decision, .. } = account;
     let mut out = Report::from(format!(
-        "{}, seed {}: round {} began at {:.1} s, and {} decided.",
-        account.scenario, account.seed, account.round, account.time_s, account.policy
+        "{}, seed {}: round {} began at {:.1} s, and {}.",
+        account.scenario,
+        account.seed,
+        account.round,
+        account.time_s,
+        who_decided(account)
     ));
     out.extend(question.task_ids().map(|task| {
         format!("  {}: robots {}", question.tasks[task.index()].name, ids(decision.assignment.of(task)))
@@ -49,8 +54,39 @@ pub(super) fn text(account: &Account, asked: &Trial) -> Report {
     oracle(&mut out, account, asked);
     if let Some(story) = &account.robot {
         robot(&mut out, story, account, asked);
+        let own = account.joins.iter().find(|join| join.robot == story.robot);
+        own.into_iter().for_each(|own| join(&mut out, own, question));
     }
     out
+}
+
+/// Who decided, and how far robots agreed.
+fn who_decided(account: &Account) -> String {
+    let Account { joins, policy, .. } = account;
+    if joins.is_empty() {
+        return format!("{policy} decided");
+    }
+    let pairs = joins.iter().enumerate().flat_map(|(i, a)| joins[i + 1..].iter().map(move |b| (a, b)));
+    let same = pairs.filter(|(a, b)| a.sees == b.sees).count();
+    let all = joins.len() * (joins.len() - 1) / 2;
+    format!("each robot decided by {policy}: {same} of {all} pairs saw the same groups")
+}
+
+/// What a robot saw when it decided, and when it had last heard of whom.
+fn join(out: &mut Report, join: &Join, question: &Question) {
+    let groups = question
+        .task_ids()
+        .map(|task| format!("{} {}", question.tasks[task.index()].name, ids(join.sees.of(task))));
+    out.say(format!("  It saw the groups {}", groups.collect::<Vec<_>>().join("; ")));
+    let mut others: Vec<u32> = join.sees.groups.iter().chain([&join.sees.idle]).flatten().copied().collect();
+    others.retain(|robot| *robot != join.robot);
+    others.sort_unstable();
+    let age = |(robot, age): (&u32, &Option<f64>)| match age {
+        Some(seconds) => format!("{robot}: {seconds:.1} s"),
+        None => format!("{robot}: never"),
+    };
+    let heard: Vec<String> = others.iter().zip(&join.ages_s).map(age).collect();
+    out.say(format!("  It had heard of the others so long ago: {}", heard.join(", ")));
 }
 
 impl Account<'_> {
