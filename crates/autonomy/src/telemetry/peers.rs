@@ -155,8 +155,8 @@ impl Telemetry {
             .collect();
         for (robot, digest) in digests {
             self.tell_peers(&now.report(robot.id, Statement::HasHeard(digest)), false, now, log);
+            self.deliver(now.time_s(), log); // of a large team, the digests of one robot fill memory enough
         }
-        self.deliver(now.time_s(), log);
     }
 
     fn digest_of(&self, robot: &KnownRobot, now: &Now<'_>) -> Digest {
