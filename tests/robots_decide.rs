@@ -57,7 +57,7 @@ fn who_hears_all_at_once_decides_as_the_base_does() {
             let settings = |decides: &'static str| [&["duration_s=240", decides], more].concat();
             let base = world(name, &settings("mission.decides=Base"));
             let alone = world(name, &settings("mission.decides=Robots(coin: Common)"));
-            for by in ["RNE", "DIS", "ENG", "HP_DIS", "OPTIMAL", "RANDOM"] {
+            for by in ["RNE", "DIS", "ENG", "HP_DIS", "OPTIMAL", "RANDOM", "HP_DIS <- Beta | Discount"] {
                 let [(base, happened), (robots, too)] = [run(&base, by, 3), run(&alone, by, 3)];
                 let groups = |record: &TrialRecord| {
                     record.decisions.iter().map(|made| made.decision.assignment.clone()).collect::<Vec<_>>()

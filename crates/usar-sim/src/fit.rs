@@ -136,6 +136,7 @@ impl<'a> Tables<'a> {
     fn check_joins(&self, decision: &Decision, joins: &[Join]) -> Fits {
         let Assignment { groups, idle } = &decision.assignment;
         let grouped = groups.iter().chain([idle]).map(Vec::len).sum::<usize>();
+        groups.iter().chain([idle]).flatten().try_for_each(|robot| self.robot("groups", *robot))?;
         let joined = |join: &Join| decision.assignment.task_of(join.robot) == join.sees.task_of(join.robot);
         let is_sum = groups.len() == self.tasks.len() && grouped == joins.len();
         fits(is_sum && joins.iter().all(joined), "decision.assignment", "must be what the robots joined")?;

@@ -48,9 +48,20 @@ struct Pending {
     unfit: Vec<(RobotId, TurnBackCause)>,
 }
 
+/// The robots at home when a round opens. Who comes home later takes part in the next one.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+struct Gathered {
+    home: Vec<RobotId>,
+    /// Those of them that take part.
+    fit: Vec<RobotId>,
+    /// Those that must rest, and why.
+    unfit: Vec<(RobotId, TurnBackCause)>,
+}
+
 /// What robots at home exchange before they decide.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct Talks {
+    who: Gathered,
     /// How often they say what they have heard.
     left: u32,
     /// The step in which they do so, or decide.
@@ -111,8 +122,8 @@ impl Mission {
 
     /// How far the robots are in their talks before a round, and until when they wait: a part of the hash
     /// chain; `None` where they neither talk nor have waited.
-    pub fn talks(&self) -> Option<impl Serialize + use<>> {
-        (self.talks.is_some() || self.waits_until > 0).then_some((self.talks, self.waits_until))
+    pub fn talks(&self) -> Option<impl Serialize + '_> {
+        (self.talks.is_some() || self.waits_until > 0).then_some((&self.talks, self.waits_until))
     }
 
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new

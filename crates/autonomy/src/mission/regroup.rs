@@ -4,10 +4,10 @@ use scenario::{Decider, Exchange, LevelSource};
 use teaming::{Assignment, Question};
 
 use super::question::question;
-use super::{Activity, Mission, Pending, Scene, Talks};
+use super::{Activity, Gathered, Mission, Pending, Scene, Talks};
 use crate::belief::KnownRobot;
 use crate::belief::{Beliefs, Holder};
-use crate::event::{Event, EventLog, TurnBackCause};
+use crate::event::{Event, EventLog};
 use crate::ids::RobotId;
 use crate::telemetry::{Now, Telemetry, seed_of};
 
@@ -67,14 +67,14 @@ impl Mission {
         if let Some(telemetry) = scene.telemetry.as_deref_mut() {
             telemetry.close_round(scene.beliefs.ledger.rounds(), scene.model, scene.step);
         }
+        let who = self.gathered(scene);
         match scene.model.mission.decides {
-            Decider::Base => self.ask(scene),
+            Decider::Base => self.ask(who, scene),
             Decider::Robots { by, .. } => {
-                let (_, unfit) = self.fit_and_unfit(scene);
-                let who: Vec<RobotId> = unfit.into_iter().map(|(id, _)| id).collect();
-                self.with_telemetry(scene, |telemetry, now, log| telemetry.tell_who_stays(&who, now, log));
+                let out: Vec<RobotId> = who.home.iter().filter(|id| !who.fit.contains(id)).copied().collect();
+                self.with_telemetry(scene, |telemetry, now, log| telemetry.tell_who_stays(&out, now, log));
                 let left = if let Exchange::Gossip { exchanges, .. } = by { exchanges } else { 0 };
-                self.talks = Some(Talks { left, next_step: scene.step });
+                self.talks = Some(Talks { who, left, next_step: scene.step });
                 self.talk(scene);
             }
         }
@@ -83,19 +83,19 @@ impl Mission {
 
     /// Robots say what they have heard, when it is time, and decide at last.
     pub(super) fn talk(&mut self, scene: &mut Scene) {
-        let Decider::Robots { by: Exchange::Gossip { every_s, .. }, .. } = scene.model.mission.decides else {
-            self.talks = None;
-            return self.ask(scene);
-        };
-        while let Some(Talks { left, next_step }) = self.talks.filter(|talks| talks.next_step <= scene.step) {
-            if left == 0 {
-                self.talks = None;
-                return self.ask(scene);
+        let Some(mut talks) = self.talks.take() else { return };
+        while talks.next_step <= scene.step {
+            if talks.left == 0 {
+                return self.ask(talks.who, scene);
             }
             self.with_telemetry(scene, Telemetry::exchange);
-            let next_step = next_step + scene.model.steps_in(every_s);
-            self.talks = Some(Talks { left: left - 1, next_step });
+            talks.left -= 1;
+            if let Decider::Robots { by: Exchange::Gossip { every_s, .. }, .. } = scene.model.mission.decides
+            {
+                talks.next_step += scene.model.steps_in(every_s);
+            }
         }
+        self.talks = Some(talks);
     }
 
     /// The robots at home that can act.
@@ -106,9 +106,9 @@ impl Mission {
         team.iter().filter(is_home).map(|robot| robot.id).collect()
     }
 
-    /// The robots at home that take part in the round, and those that must rest, and why. The base judges
-    /// them by what it knows of them, and a robot itself by how it is.
-    fn fit_and_unfit(&self, scene: &Scene) -> (Vec<RobotId>, Vec<(RobotId, TurnBackCause)>) {
+    /// The robots at home, those of them that take part in the round, and those that must rest. The base
+    /// judges them by what it knows of them, and a robot itself by how it is.
+    fn gathered(&self, scene: &Scene) -> Gathered {
         let (telemetry, mission) = (scene.telemetry.as_deref(), &scene.model.mission);
         let as_judged = |robot: &KnownRobot| match (telemetry, &scene.model.telemetry) {
             (Some(telemetry), Some(rules))
@@ -118,9 +118,10 @@ impl Mission {
             }
             _ => (**robot).clone(),
         };
+        let home = self.at_home(&scene.beliefs.team);
         let (mut fit, mut unfit) = (Vec::new(), Vec::new());
         let tasks = self.crew.groups.len() as u16;
-        for id in self.at_home(&scene.beliefs.team) {
+        for id in home.iter().copied() {
             let agent = &self.crew.agents[id.index()];
             match self.crew.unfit_cause(mission, &as_judged(&scene.beliefs.team[id.index()])) {
                 None => fit.push(id),
@@ -128,24 +129,28 @@ impl Mission {
                 Some(cause) => unfit.push((id, cause)),
             }
         }
-        (fit, unfit)
+        Gathered { home, fit, unfit }
     }
 
     /// Asks how the fit robots are to be grouped. If no robot is fit, assigns empty groups without a
     /// question.
-    fn ask(&mut self, scene: &mut Scene) {
+    fn ask(&mut self, mut who: Gathered, scene: &mut Scene) {
         if let Some(telemetry) = scene.telemetry.as_deref_mut() {
             telemetry.close_rounds_of_peers(scene.beliefs.ledger.rounds(), scene.model);
             telemetry.note_question(self.round);
         }
-        let (fit, unfit) = self.fit_and_unfit(scene);
-        let question = self.question_of(None, &fit, scene);
+        // Robots may have been lost while they talked.
+        let team = &scene.beliefs.team;
+        who.home.retain(|id| team[id.index()].is_able());
+        who.fit.retain(|id| team[id.index()].is_able());
+        who.unfit.retain(|(id, _)| team[id.index()].is_able());
+        let question = self.question_of(None, &who, scene);
         let robots_decide = !scene.model.mission.decides.is_base();
-        let asking = fit.iter().filter(|_| robots_decide);
-        let joins = asking.map(|robot| self.question_of(Some(*robot), &fit, scene)).collect();
+        let asking = who.fit.iter().filter(|_| robots_decide);
+        let joins = asking.map(|robot| self.question_of(Some(*robot), &who, scene)).collect();
         self.crew.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let is_empty = question.members.is_empty();
-        self.pending = Some(Pending { question, joins, unfit });
+        self.pending = Some(Pending { question, joins, unfit: who.unfit });
         if is_empty {
             self.assign(&Assignment::new(vec![Vec::new(); self.crew.groups.len()]), scene);
         }
@@ -153,15 +158,15 @@ impl Mission {
 
     /// The question of the base about the fit robots, or that of a robot about those at home of which it does
     /// not know that they stay out. Whom it never heard is a member like any other of its role.
-    fn question_of(&self, asker: Option<RobotId>, fit: &[RobotId], scene: &Scene) -> Question {
+    fn question_of(&self, asker: Option<RobotId>, who: &Gathered, scene: &Scene) -> Question {
         let (model, team) = (scene.model, &scene.beliefs.team);
         let telemetry = scene.telemetry.as_deref();
         let present = match (asker, telemetry) {
             (Some(asker), Some(telemetry)) => {
-                let takes_part = |id: &RobotId| !telemetry.knows_out(asker, *id, self.round);
-                self.at_home(team).into_iter().filter(takes_part).collect()
+                let is_out = |id: &RobotId| *id != asker && telemetry.knows_out(asker, *id, self.round);
+                who.home.iter().copied().filter(|id| !is_out(id)).collect()
             }
-            _ => fit.to_vec(),
+            _ => who.fit.clone(),
         };
         let member = |id: &RobotId| match telemetry {
             Some(telemetry) => telemetry.member(asker, &team[id.index()], model),

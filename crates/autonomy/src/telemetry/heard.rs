@@ -99,6 +99,15 @@ impl Heard {
         }
     }
 
+    /// Whether this report was heard before, at second hand.
+    pub(super) fn has_heard(&self, report: &Levels) -> bool {
+        self.last[report.of as usize].as_ref().is_some_and(|said| {
+            said.sent_s.total_cmp(&report.sent_s).is_eq()
+                && said.levels.map(f64::to_bits) == report.levels.map(f64::to_bits)
+                && said.needs == report.needs
+        })
+    }
+
     /// When the last that was heard of a robot was sent, in seconds.
     pub(super) fn said_at_s(&self, robot: usize) -> Option<f64> {
         self.last[robot].as_ref().map(|said| said.sent_s)
@@ -168,6 +177,7 @@ impl Heard {
         let mut round = witnessed.clone();
         let unit = model.costs.unit;
         for group in &mut round.groups {
+            let all = group.members.len();
             group.members.retain_mut(|member| {
                 let Some(trip) = known(member) else { return false };
                 let (id, spec) = (member.id as usize, &model.robots[member.id as usize].spec);
@@ -179,6 +189,9 @@ impl Heard {
                 self.log.ledger.push(trip);
                 true
             });
+            if group.members.len() < all {
+                group.rescued = group.members.iter().map(|member| member.rescued).sum();
+            }
             group.energy = group.members.iter().map(|member| member.energy).sum();
             group.hp = group.members.iter().map(|member| member.hp).sum();
         }

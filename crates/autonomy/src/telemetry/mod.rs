@@ -237,6 +237,7 @@ impl Telemetry {
         for robot in in_turn(now.team.iter().filter(|robot| robot.is_able()), now) {
             for rating in self.witnesses.ratings(rules, robot.id, now.round) {
                 let top_mps = now.team[rating.of as usize].spec.speed_mps;
+                self.know(robot.id, Statement::MateGoes(rating), now);
                 let said = self.tells(rules, robot.id, now.time_s(), Lie::is_about_mates);
                 let said = said.map_or(Some(rating), |lie| said_of_mate(&lie.lie, rating, top_mps, rules));
                 if let Some(rating) = said {

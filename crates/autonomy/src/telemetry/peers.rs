@@ -1,7 +1,5 @@
 //! What each robot heard of the others, where robots decide for themselves, and the question that it asks.
 
-use std::collections::BTreeMap;
-
 use scenario::seed::{Purpose, stream_at};
 use scenario::{Coin, Decider};
 use serde::{Deserialize, Serialize};
@@ -47,16 +45,21 @@ impl Peer {
         (self.digest, self.heard.history.len())
     }
 
+    /// Hears a message of another, or what the robot itself knows. Of itself nobody tells it anything.
     pub(super) fn hear(&mut self, message: Message) {
         self.digest = part(&(self.digest, &message));
         let (sender, heard_s) = (message.sender, message.heard_s);
+        let own = message.to.map_or(u32::MAX, |robot| robot.0);
         match message.report.says {
             Statement::RoundWas(trip) => self.trips.push(trip),
             Statement::StaysOut { round } => self.out_of[sender.index()] = round,
             Statement::HasHeard(Digest { round, levels, out }) => {
                 out.iter().for_each(|robot| self.out_of[robot.index()] = round);
-                levels.into_iter().for_each(|levels| self.hear_anew(Levels { heard_s, ..levels }));
+                let others = levels.into_iter().filter(|levels| levels.of != own);
+                others.for_each(|levels| self.hear_anew(Levels { heard_s, ..levels }));
             }
+            Statement::LevelsAre(ref levels)
+                if levels.of == own && sender.0 != own || self.heard.has_heard(levels) => {}
             _ => self.heard.hear(message),
         }
     }
@@ -115,21 +118,22 @@ impl Telemetry {
         Some(time_s - self.heard_by(Some(by)).said_at_s(robot.index())?)
     }
 
-    /// A robot knows what it reads of itself, whatever it says.
-    pub(super) fn know_oneself(&mut self, robot: RobotId, said: &Levels, now: &Now<'_>) {
-        let Some(read) = self.read[robot.index()].filter(|_| !self.peers.is_empty()) else { return };
-        let says = Statement::LevelsAre(Levels { levels: read, needs: BTreeMap::new(), ..said.clone() });
-        let report = now.report(robot, says);
-        let (to, sent_s) = (Some(robot), now.time_s());
+    /// A robot knows what it reads of itself, and what it saw, whatever it says.
+    pub(super) fn know(&mut self, robot: RobotId, says: Statement, now: &Now<'_>) {
+        if self.peers.is_empty() {
+            return;
+        }
+        let (report, to, sent_s) = (now.report(robot, says), Some(robot), now.time_s());
         self.under_way.push(Message { sender: robot, to, sent_s, heard_s: sent_s, by_radio: false, report });
     }
 
     /// Robots say what became of them in the round that is over.
     pub(crate) fn tell_rounds(&mut self, round: &RoundOutcome, now: &Now<'_>, log: &mut EventLog) {
         let time_s = now.time_s();
-        for member in round.groups.iter().flat_map(|group| &group.members) {
-            let robot = &now.team[member.id as usize];
-            if robot.is_able() && (now.presence)(robot).is_home {
+        let is_home = |robot: &&KnownRobot| robot.is_able() && (now.presence)(robot).is_home;
+        for robot in in_turn(now.team.iter().filter(is_home), now) {
+            let mut members = round.groups.iter().flat_map(|group| &group.members);
+            if let Some(member) = members.find(|member| member.id == robot.id.0) {
                 let trip = self.trips[robot.id.index()].ended(member, round, time_s);
                 self.tell_peers(&now.report(robot.id, Statement::RoundWas(trip)), false, now, log);
             }
@@ -139,9 +143,10 @@ impl Telemetry {
 
     /// Robots that must rest say that they stay out of the round.
     pub(crate) fn tell_who_stays(&mut self, who: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
-        for robot in who {
+        let stays = |robot: &&KnownRobot| who.contains(&robot.id);
+        for robot in in_turn(now.team.iter().filter(stays), now) {
             let says = Statement::StaysOut { round: now.round };
-            self.tell_peers(&now.report(*robot, says), false, now, log);
+            self.tell_peers(&now.report(robot.id, says), false, now, log);
         }
         self.deliver(now.time_s(), log);
     }

@@ -55,7 +55,9 @@ impl Telemetry {
         let reports: Vec<Levels> = robots.iter().map(|robot| self.levels_said(robot, rules, now)).collect();
         for (robot, report) in robots.iter().zip(&reports) {
             self.send(Statement::LevelsAre(report.clone()), robot, now, log);
-            self.know_oneself(robot.id, report, now);
+            let read = self.read[robot.id.index()].unwrap_or(report.levels);
+            let known = Levels { levels: read, needs: BTreeMap::new(), ..report.clone() };
+            self.know(robot.id, Statement::LevelsAre(known), now);
         }
         for (robot, report) in robots.into_iter().zip(reports) {
             let other =
@@ -127,7 +129,7 @@ impl Telemetry {
                 others,
             };
             for level in (0..2).filter(|level| lie.on_levels[*level]) {
-                let others = self.heard.mean_of_others(robot, now.team, level);
+                let others = self.heard_by(Some(robot.id)).mean_of_others(robot, now.team, level);
                 levels[level] = lie.said(read[level], &topic(level, level, others), 100.0);
             }
             let most = if rules.clip { 100.0 } else { f64::MAX };

@@ -51,7 +51,8 @@ impl Experiment {
                 let answer = session.decide(&Asked::of(&question).knowing(asked.team()));
                 answer.ok().is_none_or(|answer| answer.assignment != asked.decision.assignment)
             };
-            record.decisions.iter().find(is_other).map(|asked| asked.question.round)
+            let of_base = record.decisions.iter().filter(|made| made.joins.is_empty());
+            of_base.into_iter().find(is_other).map(|asked| asked.question.round)
         };
         (0..TIMES_ASKED).find_map(|_| first_other())
     }

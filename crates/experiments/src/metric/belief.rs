@@ -47,7 +47,8 @@ pub(super) fn rank_agreement(record: &TrialRecord) -> Option<f64> {
         let side = |value: fn(&Belief) -> f64| all.iter().map(value).collect::<Vec<_>>();
         tau_b(&side(|it| it.mean), &side(|it| it.truth))
     };
-    mean(record.decisions.iter().flat_map(|made| [of(made, 0), of(made, 1)]).flatten())
+    let decisions = record.decisions.iter().filter(|made| made.joins.is_empty());
+    mean(decisions.flat_map(|made| [of(made, 0), of(made, 1)]).flatten())
 }
 
 /// How often an honest robot is trusted more than a liar.
@@ -138,10 +139,10 @@ fn asked_at_s(record: &TrialRecord, made: &DecisionRecord) -> f64 {
     round.map_or(record.time_s, |round| round.start_s)
 }
 
-/// All levels that were believed, in trials with reports.
+/// All levels that the base believed, in trials with reports in which it decides.
 fn beliefs(record: &TrialRecord) -> impl Iterator<Item = Belief> {
     let decisions = record.heard.iter().flat_map(|_| &record.decisions);
-    decisions.flat_map(beliefs_of)
+    decisions.filter(|made| made.joins.is_empty()).flat_map(beliefs_of)
 }
 
 fn beliefs_of(made: &DecisionRecord) -> impl Iterator<Item = Belief> {

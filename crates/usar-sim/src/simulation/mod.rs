@@ -289,8 +289,10 @@ impl Simulation {
     /// Lets a session answer what is asked. Without a usable answer, the trial has failed.
     fn answer(&mut self, session: &mut impl Session) {
         let team = self.team();
-        let mut decide = |question| {
-            let asked = Asked::of(question).knowing(&team).within(self);
+        let mut decide = |question: &Question| {
+            let asked = Asked::of(question).knowing(&team);
+            // A robot that decides for itself cannot play the trial on.
+            let asked = if question.asker.is_some() { asked } else { asked.within(self) };
             session.decide(&asked).map_err(|error| error.to_string())
         };
         let taken = if self.joins.is_empty() {
