@@ -143,8 +143,8 @@ impl Telemetry {
 
     /// Robots that must rest say that they stay out of the round.
     pub(crate) fn tell_who_stays(&mut self, who: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
-        let stays = |robot: &&KnownRobot| who.contains(&robot.id);
-        for robot in in_turn(now.team.iter().filter(stays), now) {
+        let is_out = |robot: &&KnownRobot| who.contains(&robot.id);
+        for robot in in_turn(now.team.iter().filter(is_out), now) {
             let says = Statement::StaysOut { round: now.round };
             self.tell_peers(&now.report(robot.id, says), false, now, log);
         }
