@@ -226,7 +226,7 @@ fn why_tells_in_sentences_and_names_what_it_cannot_find() {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }
     let forked =
-        succeeds(&usar(here, "fork short.ron --round 2 --instead DIS --set mission.decides=Robots()"));
+        succeeds(&usar(here, "fork short.ron --round 1 --instead DIS --set mission.decides=Robots()"));
     assert!(forked.contains("DIS"), "{forked}");
     refused(here, 2, "why short.ron --round 99", &["--round: no round 99 began up to"]);
     refused(here, 2, "why short.ron --robot 99", &["--robot: must be below 12, found 99"]);
