@@ -2,8 +2,10 @@
 
 use experiments::experiment::with_settings;
 use rayon::prelude::*;
-use scenario::{AtHome, Coin, Decider, Exchange, Loss, MediumRules, Scenario};
-use teaming::{Assignment, Decision, Question};
+use scenario::{AtHome, Coin, Decider, Loss, MediumRules, Scenario};
+use serde_json::json;
+use teaming::protocol::{Act, Choice, Say, Stays, Turn, Undecided};
+use teaming::{Asked, Assignment, Decision, PolicyError, Session, TaskId};
 use usar_sim::event::Event;
 use usar_sim::record::TrialRecord;
 use usar_sim::simulation::{Advance, Ask, Simulation};
@@ -70,7 +72,7 @@ fn who_hears_all_at_once_decides_as_the_base_does() {
                 }
                 let joins = robots.decisions.iter().flat_map(|made| &made.joins);
                 assert!(joins.clone().count() > 0, "{name} {by}: nobody decided");
-                assert!(joins.flat_map(|join| &join.ages_s).all(|age| *age == Some(0.0)), "{name} {by}");
+                assert!(joins.flat_map(|join| join.ages_s.values()).all(|age| *age == Some(0.0)), "{name} {by}");
             }
         }
     });
@@ -83,8 +85,8 @@ fn what_a_robot_did_not_hear_changes_nothing_for_it() {
     let asked = |deceit: &str| {
         let settings = ["mission.decides=Robots()", "reports=()", far, deceit];
         let mut trial = Simulation::new(&world("trust/tunnel.ron", &settings), 1).unwrap();
-        let Advance::Asks(Ask::Joins(questions)) = trial.advance() else { panic!("robots decide") };
-        questions.to_vec()
+        let Advance::Asks(Ask::Turns(turns)) = trial.advance() else { panic!("robots decide") };
+        turns.iter().map(|turn| turn.question.clone()).collect::<Vec<_>>()
     };
     let before = asked("deceit=[]");
     let after = asked("deceit=[(who: Robots([0]), lie: Understate(by: 0.5), on: [Energy, Hp])]");
@@ -111,22 +113,22 @@ fn what_a_robot_did_not_hear_changes_nothing_for_it() {
 fn robots_that_exchange_what_they_heard_agree_more() {
     let lossy = "medium=(at_home: Medium, loss: GilbertElliott(p: 0.5, r: 0.5, good: 0.6, bad: 0.6))";
     let agreement = |by: &str| {
-        let decides = format!("mission.decides=Robots(by: {by})");
-        let scenario = world("trust/tunnel.ron", &["duration_s=600", &decides, "reports=()", lossy]);
-        let (record, events) = run(&scenario, "HP_DIS", 1);
+        let robots = "mission.decides=Robots()";
+        let scenario = world("trust/tunnel.ron", &["duration_s=600", robots, "reports=()", lossy]);
+        let (record, events) = run(&scenario, by, 1);
         let first = &record.decisions[0];
-        let mut session = policy("HP_DIS");
+        let mut session = policy(by);
         let mut trial = Simulation::new(&scenario, 1).unwrap();
         while trial.time_s() < 120.0 {
             assert_eq!(trial.step(&mut *session), None);
         }
-        let again = Simulation::restore(&scenario, &trial.snapshot("HP_DIS")).unwrap();
+        let again = Simulation::restore(&scenario, &trial.snapshot(by)).unwrap();
         assert_eq!(again.run(&mut *session, |_, _, _| {}).state_hash, record.state_hash, "{by}");
         assert!(events.iter().any(|event| matches!(event, Event::Delivered { .. })), "{by}");
         let pairs = first.joins.iter().flat_map(|a| first.joins.iter().map(move |b| a.sees == b.sees));
         pairs.filter(|agree| *agree).count()
     };
-    let (alone, gossip) = (agreement("Alone"), agreement("Gossip(exchanges: 4, every_s: 1)"));
+    let (alone, gossip) = (agreement("HP_DIS"), agreement("HP_DIS by Gossip(exchanges: 4)"));
     assert!(alone < gossip, "{alone} of 144 pairs agree alone, {gossip} after gossip");
     assert_eq!(gossip, 144, "after four exchanges all have heard all");
 }
@@ -134,30 +136,22 @@ fn robots_that_exchange_what_they_heard_agree_more() {
 /// Of a team in which nobody goes, robots ask again after a while, and not in every step.
 #[test]
 fn a_team_of_which_nobody_goes_asks_again_later() {
-    let sees_itself_out = |question: &Question| {
-        let ids: Vec<u32> = question.members.iter().map(|member| member.id).collect();
-        let asker = question.asker.unwrap();
-        let mut groups = vec![Vec::new(); question.tasks.len()];
-        groups[0] = ids.into_iter().filter(|id| *id != asker).collect();
-        Decision::of(Assignment { groups, idle: vec![asker] })
-    };
+    let stays = |_: &Turn| Act { joins: Some(Choice::Stays(Stays::AtHome)), ..Act::default() };
     let settings = [
         "mission.decides=Robots(retry_s: 20)",
-        "mission.may_idle=true",
-        "mission.group_sizes=Free",
         "duration_s=100",
     ];
     let mut trial = Simulation::new(&world("trust/tunnel.ron", &settings), 1).unwrap();
     let mut asked_s = Vec::new();
     loop {
-        let decisions: Vec<Decision> = match trial.advance() {
+        let acts: Vec<Act> = match trial.advance() {
             Advance::Running => continue,
             Advance::Over(_) => break,
-            Advance::Asks(Ask::Joins(questions)) => questions.iter().map(sees_itself_out).collect(),
+            Advance::Asks(Ask::Turns(turns)) => turns.iter().map(stays).collect(),
             Advance::Asks(Ask::Grouping(_)) => panic!("robots decide"),
         };
         asked_s.push(trial.time_s().round());
-        trial.join(&decisions).unwrap();
+        trial.act(acts).unwrap();
     }
     assert_eq!(asked_s, [0.0, 20.0, 40.0, 60.0, 80.0]);
     assert_eq!(trial.finish().status.name(), "completed");
@@ -173,10 +167,12 @@ fn in_random_worlds_robots_decide_soundly() {
         file.duration_s = 100.0;
         let pick = |of: u64| (seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32) % of;
         let by = match pick(3) {
-            0 => Exchange::Alone,
-            more => Exchange::Gossip { exchanges: more as u32, every_s: [0.0, 0.5, 2.0][pick(3) as usize] },
+            0 => String::new(),
+            more => format!(" by Gossip(exchanges: {more}, every_s: {})", [0.0, 0.5, 2.0][pick(3) as usize]),
         };
-        file.mission.decides = Decider::Robots { by, coin: Coin::Own, retry_s: 10.0 };
+        let undecided = [Undecided::OwnView, Undecided::Base, Undecided::Stays][pick(11) as usize % 3];
+        let deadline_s = [30.0, 0.5][pick(13) as usize % 2];
+        file.mission.decides = Decider::Robots { coin: Coin::Own, deadline_s, undecided, retry_s: 10.0 };
         let lost = [0.0, 0.3, 0.7, 1.0][pick(4) as usize];
         file.medium = (pick(5) > 0).then(|| MediumRules {
             range_m: Some([4.0, 10.0, 100.0][pick(3) as usize]),
@@ -187,9 +183,132 @@ fn in_random_worlds_robots_decide_soundly() {
             ..MediumRules::default()
         });
         let scenario = Scenario::try_from(file).unwrap_or_else(|wrong| panic!("world {seed}: {wrong:?}"));
-        let policy = ["HP_DIS", "RANDOM", "RNE"][pick(3) as usize];
-        let journeys = Journeys::run(&scenario, policy, seed);
+        let policy = format!("{}{by}", ["HP_DIS", "RANDOM", "RNE"][pick(3) as usize]);
+        let journeys = Journeys::run(&scenario, &policy, seed);
         let journeys = journeys.unwrap_or_else(|reason| panic!("world {seed}, {policy}: {reason}"));
         assert!(journeys.standstill_s <= STANDSTILL_S, "world {seed}: {} s", journeys.standstill_s);
     });
+}
+
+/// Answers the turns of robots until somebody is told something, or nobody asks any more.
+fn told_after(trial: &mut Simulation, mut act: impl FnMut(&Turn) -> Act) -> Vec<Turn> {
+    while trial.time_s() < 20.0 {
+        let acts: Vec<Act> = match trial.advance() {
+            Advance::Asks(Ask::Turns(turns)) if turns.iter().any(|turn| !turn.told.is_empty()) => {
+                return turns.to_vec();
+            }
+            Advance::Asks(Ask::Turns(turns)) => turns.iter().map(&mut act).collect(),
+            Advance::Running => continue,
+            _ => break,
+        };
+        trial.act(acts).unwrap();
+    }
+    Vec::new()
+}
+
+/// What a robot says is heard by those whom its radio reaches, later by a late medium, and by nobody else.
+#[test]
+fn what_a_robot_says_is_heard_by_those_in_reach() {
+    let says = |turn: &Turn| {
+        let (all, one) = (json!(["all", turn.robot]), json!(["one", turn.robot]));
+        let to_7 = Say { to: Some(7), what: one };
+        Act { says: vec![Say { to: None, what: all }, to_7], wake_in_s: Some(5.0), ..Act::default() }
+    };
+    for (medium, metres, age_s) in [
+        ("medium=None", f64::INFINITY, 0.1),
+        ("medium=(at_home: Medium, range_m: 3)", 3.0, 0.1),
+        ("medium=(at_home: Medium, delay_s: 2)", f64::INFINITY, 2.0),
+    ] {
+        let reports = if metres.is_finite() || age_s > 1.0 { "reports=()" } else { "duration_s=900" };
+        let scenario = world("trust/tunnel.ron", &["mission.decides=Robots()", medium, reports]);
+        let mut trial = Simulation::new(&scenario, 1).unwrap();
+        let turns = told_after(&mut trial, says);
+        assert_eq!(turns.len(), 12, "{medium}");
+        let homes: Vec<[f64; 2]> = turns[0].question.members.iter().map(|member| member.home).collect();
+        let distance = |a: u32, b: u32| {
+            let [x, y] = [0, 1].map(|axis| homes[a as usize][axis] - homes[b as usize][axis]);
+            x.hypot(y)
+        };
+        let mut heard = 0;
+        for turn in &turns {
+            let others = (0..12).filter(|from| *from != turn.robot && distance(*from, turn.robot) <= metres);
+            let one = |from: u32| (turn.robot == 7).then(|| (from, json!(["one", from])));
+            let expected: Vec<(u32, serde_json::Value)> =
+                others.flat_map(|from| [(from, json!(["all", from]))].into_iter().chain(one(from))).collect();
+            let told: Vec<_> = turn.told.iter().map(|told| (told.from, told.what.clone())).collect();
+            assert_eq!(told, expected, "{medium}: robot {}", turn.robot);
+            let ages = turn.told.iter().map(|told| (told.age_s - age_s).abs());
+            assert!(ages.fold(0.0, f64::max) < 0.11, "{medium}: {:?}", turn.told.first());
+            heard += told.len();
+        }
+        assert!(heard > 20 && (heard < 143) == metres.is_finite(), "{medium}: {heard} of 143 were heard");
+    }
+}
+
+/// Robots that never decide are out of time at the deadline, and do as the scenario says.
+#[test]
+fn who_has_not_decided_by_the_deadline_does_as_the_scenario_says() {
+    for (undecided, expected) in [("OwnView", 12), ("Base", 12), ("Stays", 0)] {
+        let decides = format!("mission.decides=Robots(deadline_s: 3, undecided: {undecided})");
+        let settings = [&decides, "duration_s=100", "reports=()"];
+        let mut never = Never(policy("HP_DIS"));
+        let mut trial = Simulation::new(&world("trust/tunnel.ron", &settings), 1).unwrap().checked();
+        while trial.time_s() < 5.0 {
+            assert_eq!(trial.step(&mut never), None);
+        }
+        let record = trial.finish();
+        let joins = &record.decisions[0].joins;
+        let went = record.decisions[0].decision.assignment.groups.iter().map(Vec::len).sum::<usize>();
+        assert_eq!((joins.len(), went), (12, expected), "{undecided}");
+        assert!(joins.iter().all(|join| join.is_late && join.after_s == 3.0), "{:?}", joins[0]);
+        if undecided == "Base" {
+            let seen = joins.iter().map(|join| &join.sees);
+            assert!(seen.into_iter().all(|sees| *sees == joins[0].sees));
+        }
+    }
+}
+
+/// Robots that wait for each other, until they are out of time.
+struct Never(Box<dyn Session>);
+
+impl Session for Never {
+    fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+        self.0.decide(asked)
+    }
+
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        match turns[0].late {
+            Some(_) => self.0.act(turns, base),
+            None => Ok(turns.iter().map(|_| Act::default()).collect()),
+        }
+    }
+}
+
+#[test]
+fn an_act_that_cannot_be_done_is_refused_and_changes_nothing() {
+    let mut trial = Simulation::new(&world("trust/tunnel.ron", &["mission.decides=Robots()"]), 1).unwrap();
+    let Advance::Asks(Ask::Turns(turns)) = trial.advance() else { panic!("robots decide") };
+    let (before, tasks) = (turns.to_vec(), turns[0].question.tasks.len());
+    let groups = |groups: Vec<Vec<u32>>| Act::joins(Assignment::new(groups));
+    let stays = Act { joins: Some(Choice::Stays(Stays::AtHome)), ..Act::default() };
+    for (act, expected) in [
+        (Act { wake_in_s: Some(f64::NAN), ..Act::default() }, "robot 0: wake_in_s must be 0 to 86400"),
+        (Act { asks: true, ..Act::default() }, "robot 0: asks must be false: there is no rule before `by`"),
+        (Act { state: json!("x".repeat(17_000)), ..Act::default() }, "robot 0: state must have at most 16 KiB"),
+        (Act { joins: Some(Choice::Group(TaskId(9))), ..Act::default() }, "joins must be the number of a task"),
+        (groups(vec![vec![0]; tasks + 1]), "a group for each of the 2 tasks, found 3"),
+        (groups(vec![vec![0], vec![0]]), "robot 0 must be in exactly one group, found it twice"),
+        (groups(vec![vec![0], vec![99]]), "robot 99 is not a member"),
+        (groups(vec![vec![1], vec![2]]), "robot 0 must be in exactly one group, found it in none"),
+    ] {
+        let acts = [vec![act], vec![stays.clone(); 11]].concat();
+        let error = trial.act(acts).unwrap_err().to_string();
+        assert!(error.contains(expected), "{error}");
+        let Advance::Asks(Ask::Turns(turns)) = trial.advance() else { panic!("the turns wait") };
+        assert_eq!(before, turns, "{expected}");
+    }
+    assert_eq!(trial.act(vec![stays.clone(); 3]).unwrap_err().to_string(), "no question waits for an answer");
+    let again = |_| trial.act(vec![Act { wake_in_s: Some(0.0), ..Act::default() }; 12]).err();
+    let endless = (0..200).find_map(again).unwrap().to_string();
+    assert_eq!(endless, "robot 0: wake_in_s must not be 0 again and again");
 }

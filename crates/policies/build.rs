@@ -1,27 +1,32 @@
-//! Tells each policy, trust measure and estimator the hash of its sources: of its file or folder, and of the
-//! files that they share. `src/energy.rs` reads its own as `env!("SOURCES_ENERGY")`, `src/estimators/brs.rs`
-//! as `env!("SOURCES_ESTIMATOR_BRS")`.
+//! Tells each policy, trust measure, estimator and protocol the hash of its sources: of its file or folder,
+//! and of the files that they share. `src/energy.rs` reads its own as `env!("SOURCES_ENERGY")`,
+//! `src/estimators/brs.rs` as `env!("SOURCES_ESTIMATOR_BRS")`.
 
 use std::path::{Path, PathBuf};
 
-/// Texts by which the file of a policy, of a trust measure or of an estimator is known; other files are
-/// shared.
-const ENTRIES: [&str; 3] =
-    ["pub fn kind() -> PolicyKind", "pub fn measure_kind() -> MeasureKind", "pub fn kind() -> EstimatorKind"];
+/// Texts by which the file of an entry is known; other files are shared.
+const ENTRIES: [&str; 4] = [
+    "pub fn kind() -> PolicyKind",
+    "pub fn measure_kind() -> MeasureKind",
+    "pub fn kind() -> EstimatorKind",
+    "pub fn kind() -> ProtocolKind",
+];
 
 /// Files that decide no answer: the lists of them all, which a new one changes, and questions for tests.
-const LISTS: [&str; 3] = ["lib.rs", "estimators/mod.rs", "made_up.rs"];
+const LISTS: [&str; 4] = ["lib.rs", "estimators/mod.rs", "protocols/mod.rs", "made_up.rs"];
 
-/// The folder of the estimators. Policies do not lean on it.
-const ESTIMATORS: &str = "estimators";
+/// The folders of other kinds. Policies do not lean on them.
+const OTHERS: [[&str; 2]; 2] = [["estimators", "ESTIMATOR_"], ["protocols", "PROTOCOL_"]];
 
 fn main() {
     println!("cargo::rerun-if-changed=src");
     println!("cargo::rerun-if-changed=Cargo.toml");
     let mut places = inside("src");
-    places.retain(|path| !path.ends_with(ESTIMATORS));
+    places.retain(|path| OTHERS.iter().all(|[folder, _]| !path.ends_with(folder)));
     let shared = hash_entries(places, "", vec!["Cargo.toml".into()]);
-    hash_entries(inside(&format!("src/{ESTIMATORS}")), "ESTIMATOR_", shared);
+    for [folder, prefix] in OTHERS {
+        hash_entries(inside(&format!("src/{folder}")), prefix, shared.clone());
+    }
 }
 
 /// What is in a folder, without the lists and the questions for tests.

@@ -120,7 +120,7 @@ impl Policies {
         let consent = Consent::new(typed, unknown, tell, &call.stop);
         let (stop, guard) = (Arc::clone(&call.stop), guard_words(py));
         let launch = Launch { stop, begin: || (), longest: None, consent, guard };
-        registry.add(programs::kind(launch)).map_err(taken)?;
+        programs::add_to(&mut registry, launch).map_err(taken)?;
         let raised = Raised::default();
         let mut written = Vec::new();
         for policy in given {

@@ -326,7 +326,8 @@ impl Event {
             | Statement::MateGoes(_)
             | Statement::RoundWas(_)
             | Statement::StaysOut { .. }
-            | Statement::HasHeard(_) => None,
+            | Statement::HasHeard(_)
+            | Statement::Protocol { .. } => None,
         }
     }
 }

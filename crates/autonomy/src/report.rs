@@ -138,6 +138,13 @@ pub enum Statement {
     },
     /// What the sender has heard of all before a round.
     HasHeard(Digest),
+    /// What a protocol has the sender say.
+    Protocol {
+        /// The round about which robots negotiate.
+        round: u32,
+        /// What, in JSON.
+        what: String,
+    },
 }
 
 /// What a robot has heard of all before a round.
@@ -165,7 +172,8 @@ impl Statement {
             | Self::MateGoes(_)
             | Self::RoundWas(_)
             | Self::StaysOut { .. }
-            | Self::HasHeard(_) => false,
+            | Self::HasHeard(_)
+            | Self::Protocol { .. } => false,
         }
     }
 }

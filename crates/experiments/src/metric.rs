@@ -154,6 +154,10 @@ const OF_JOINS: &[Declaration] = &[
         .means("How old what robots had last heard of each other was when they decided, on average."),
     whole("never_heard", "", joins::never_heard).lower()
         .means("The share of other robots of which a robot had never heard when it decided, on average."),
+    whole("seconds_to_agree", "s", joins::seconds_to_agree).lower()
+        .means("Time until all robots had decided, on average over decisions with agreement on all groups."),
+    whole("decided_late", "", joins::decided_late).lower()
+        .means("The share of robots that had not decided when the time of a negotiation was over."),
     whole("messages", "", joins::messages).means("Messages over the medium, for each hearer one."),
     whole("messages_lost", "", joins::messages_lost).means("Those that were not heard until the end."),
 ];

@@ -1,5 +1,5 @@
-//! The policies and the estimators of the house, one file each, with their options. They answer the
-//! questions of [`teaming`].
+//! The policies, the estimators and the protocols of the house, one file each, with their options. They
+//! answer the questions of [`teaming`].
 //!
 //! ```
 //! let rne = policies::standard().make("RNE", "(score: Sum)")?;
@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A policy is one file and one line in [`standard`], and so is a trust measure; an estimator is one file and
-//! one line in [`estimators`]. A program adds its own with [`Registry::add`], [`Registry::add_measure`] and
-//! [`Registry::add_estimator`].
+//! one line in [`estimators`]; a protocol is a file in `protocols`. A program adds its own with
+//! [`Registry::add`], [`Registry::add_measure`], [`Registry::add_estimator`] and [`Registry::add_protocol`].
 
 mod assigning;
 pub mod balance;
@@ -25,6 +25,7 @@ pub mod hp_distance;
 pub mod kmeans;
 pub mod optimal;
 pub mod random;
+mod protocols;
 mod ranking;
 pub mod rne;
 mod searching;
@@ -37,7 +38,7 @@ use teaming::Registry;
 
 pub use rne::RneOptions;
 
-/// The built-in policies and estimators, and RNE as a trust measure.
+/// The built-in policies, estimators and protocols, and RNE as a trust measure.
 #[must_use]
 pub fn standard() -> Registry {
     let mut registry = Registry::default();
@@ -50,6 +51,9 @@ pub fn standard() -> Registry {
     let _ = registry.add_measure(rne::measure_kind());
     for kind in estimators::kinds() {
         let _ = registry.add_estimator(kind); // so do theirs
+    }
+    for kind in protocols::kinds() {
+        let _ = registry.add_protocol(kind); // and theirs
     }
     registry
 }

@@ -1,12 +1,16 @@
-//! `EXEC`: a policy whose sessions are processes of a program.
+//! `EXEC`: a policy, or a protocol of robots, whose sessions are processes of a program.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::ffi::OsString;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
+use teaming::protocol::each_alone;
 use teaming::{
-    Asked, Basis, Deadline, Decision, Driver, PolicyError, PolicyKind, Question, Session, TrialStart,
+    Act, Asked, Basis, Deadline, Decision, Driver, PolicyError, PolicyKind, Question, Registry, RegistryError,
+    Session, TrialStart, Turn,
 };
 
 use crate::consent::Consent;
@@ -14,10 +18,13 @@ use crate::error::{Complaint, ProgramError};
 use crate::files::fingerprint;
 use crate::options::{NAME, Options, OptionsError};
 use crate::process::{MOST_BYTES, NoLine, Process, Until};
-use crate::protocol::{Greeting, Message, Trial, decision};
+use crate::protocol::{Greeting, Message, Speaks, Trial, acts, decision};
 
 /// What it does.
 const ABOUT: &str = "a program in any language answers";
+
+/// What it does for robots that talk.
+const ABOUT_TALKS: &str = "a program in any language says what each robot does in its turn";
 
 /// A longer wait for a hello is told.
 const NOTICED: Duration = Duration::from_secs(5);
@@ -41,23 +48,39 @@ pub struct Launch {
     pub guard: Vec<OsString>,
 }
 
-/// The kind `EXEC`.
-#[must_use]
-pub fn kind(launch: Launch) -> PolicyKind {
-    PolicyKind::made(NAME, ABOUT, move |options: Options, _: &_| {
+/// Adds `EXEC` to the policies and to the protocols of a registry.
+///
+/// # Errors
+/// The name is taken; the registry has what could be added.
+pub fn add_to(registry: &mut Registry, launch: Launch) -> Result<(), RegistryError> {
+    let protocol = registry.add_protocol(made(launch.clone(), ABOUT_TALKS, Speaks::Acts));
+    registry.add(made(launch, ABOUT, Speaks::Decisions)).and(protocol)
+}
+
+fn made(launch: Launch, about: &str, speaks: Speaks) -> PolicyKind {
+    PolicyKind::made(NAME, about, move |options: Options, _: &_| {
         options.check()?;
-        let program = Program::new(options, NAME.to_owned(), launch.clone());
+        if options.isolate && speaks == Speaks::Decisions {
+            return Err(OptionsError::Isolate);
+        }
+        let program = Program::new(options, NAME.to_owned(), launch.clone(), speaks);
         Ok::<_, OptionsError>(Arc::new(Handle(Arc::new(program))) as Arc<dyn Driver>)
     })
 }
 
-/// The kind `EXEC` for readers: each program is a name that stands for itself, and none is ever started.
-#[must_use]
-pub fn names() -> PolicyKind {
-    PolicyKind::made(NAME, ABOUT, |options: Options, _: &_| {
-        options.check()?;
-        Ok::<_, OptionsError>(Arc::new(Name(options)) as Arc<dyn Driver>)
-    })
+/// The same for readers: each program is a name that stands for itself, and none is ever started.
+///
+/// # Errors
+/// Those of [`add_to`].
+pub fn add_names(registry: &mut Registry) -> Result<(), RegistryError> {
+    let named = |about: &str| {
+        PolicyKind::made(NAME, about, |options: Options, _: &_| {
+            options.check()?;
+            Ok::<_, OptionsError>(Arc::new(Name(options)) as Arc<dyn Driver>)
+        })
+    };
+    let protocol = registry.add_protocol(named(ABOUT_TALKS));
+    registry.add(named(ABOUT)).and(protocol)
 }
 
 /// A program that stands for itself.
@@ -87,6 +110,7 @@ struct Program {
     /// Name of the policy in tables.
     label: String,
     launch: Launch,
+    speaks: Speaks,
     /// Number of processes so far.
     started: AtomicU32,
     /// Number of the last trials, in a row, in which a process ended by itself.
@@ -97,11 +121,12 @@ struct Program {
 }
 
 impl Program {
-    fn new(options: Options, label: String, launch: Launch) -> Self {
+    fn new(options: Options, label: String, launch: Launch, speaks: Speaks) -> Self {
         Self {
             options,
             label,
             launch,
+            speaks,
             started: AtomicU32::new(0),
             deaths: AtomicU32::new(0),
             greeting: OnceLock::new(),
@@ -121,7 +146,7 @@ impl Program {
             }
         })?;
         let number = self.started.fetch_add(1, Ordering::Relaxed);
-        let hello = Message::hello(&self.label, &self.options.options.0, number).line();
+        let hello = Message::hello(self.speaks, &self.label, &self.options.options.0, number).line();
         let until = Until { deadline: Deadline::NEVER, stop: &self.launch.stop };
         let (longest, limit) = self.longest(self.options.start(), "start_s");
         let mut line = process.exchange(&hello, longest.min(NOTICED), until);
@@ -134,7 +159,7 @@ impl Program {
             let silent = Complaint::NoHello(longest.as_secs_f64(), limit);
             self.failed(&mut process, no_line, silent)
         })?;
-        let greeting = Greeting::read(&line).map_err(|complaint| {
+        let greeting = Greeting::read(&line, self.speaks).map_err(|complaint| {
             let last_words = process.last_words();
             ProgramError { line: Some(line), last_words, ..complaint.into() }
         })?;
@@ -205,15 +230,10 @@ struct Handle(Arc<Program>);
 
 impl Driver for Handle {
     fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
-        let process = Some(self.0.process()?);
-        Ok(Box::new(ProgramSession {
-            program: Arc::clone(&self.0),
-            process,
-            trial: None,
-            trials: 0,
-            lost: None,
-            questions: 0,
-        }))
+        if self.0.options.isolate {
+            return Ok(Box::new(Isolated { program: Arc::clone(&self.0), robots: BTreeMap::new(), trial: None }));
+        }
+        Ok(Box::new(ProgramSession::open(&self.0)?))
     }
 
     fn basis(&self) -> Basis {
@@ -241,8 +261,8 @@ impl Driver for Handle {
     }
 
     fn labelled(&self, label: &str) -> Option<Arc<dyn Driver>> {
-        let Program { options, launch, .. } = &*self.0;
-        let program = Program::new(options.clone(), label.to_owned(), launch.clone());
+        let Program { options, launch, speaks, .. } = &*self.0;
+        let program = Program::new(options.clone(), label.to_owned(), launch.clone(), *speaks);
         Some(Arc::new(Self(Arc::new(program))))
     }
 
@@ -266,14 +286,26 @@ struct ProgramSession {
 }
 
 impl ProgramSession {
-    fn ask(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
+    fn open(program: &Arc<Program>) -> Result<Self, PolicyError> {
+        let process = Some(program.process()?);
+        let program = Arc::clone(program);
+        Ok(Self { program, process, trial: None, trials: 0, lost: None, questions: 0 })
+    }
+
+    /// Sends a message of this number, and reads the answer.
+    fn ask<T>(
+        &mut self,
+        asked: &Asked<'_>,
+        message: impl FnOnce(u64, Option<Trial<'_>>) -> Vec<u8>,
+        read: impl FnOnce(&[u8], u64) -> Result<T, Complaint>,
+    ) -> Result<T, PolicyError> {
         let Some(mut process) = self.process.take() else {
             return Err(self.lost.clone().unwrap_or(PolicyError::Late));
         };
         self.questions += 1;
         let id = self.questions;
         let trial = self.trial.as_ref().map(|(_, scenario)| Trial { number: self.trials, scenario });
-        let line = Message::Question { id, trial, question: &asked.question.sealed() }.line();
+        let line = message(id, trial);
         if line.len() > MOST_BYTES {
             return Err(self.lose(ProgramError::from(Complaint::LongQuestion), asked.question));
         }
@@ -291,16 +323,16 @@ impl ProgramSession {
                 return Err(self.lose(error, asked.question));
             }
         };
-        let complaint = match decision(&line, id, asked.question) {
-            Ok(decision) => {
+        let complaint = match read(&line, id) {
+            Ok(answer) => {
                 self.process = Some(process);
-                return Ok(decision);
+                return Ok(answer);
             }
             Err(complaint) => complaint,
         };
         let last_words = process.last_words();
         let is_in_step =
-            matches!(complaint, Complaint::GaveUp(_) | Complaint::Decision(_) | Complaint::Assignment(_));
+            matches!(complaint, Complaint::GaveUp(_) | Complaint::Answer { .. } | Complaint::Assignment(_));
         let has_line = !matches!(complaint, Complaint::GaveUp(_));
         let error = ProgramError { line: has_line.then_some(line), last_words, ..complaint.into() };
         if is_in_step {
@@ -352,7 +384,63 @@ impl Session for ProgramSession {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        self.ask(asked)
+        if self.program.speaks == Speaks::Acts {
+            return Err(PolicyError::NoRule);
+        }
+        let question = asked.question.sealed();
+        self.ask(
+            asked,
+            |id, trial| Message::Question { id, trial, question: &question }.line(),
+            |line, id| decision(line, id, asked.question),
+        )
+    }
+
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        if self.program.speaks == Speaks::Decisions {
+            return each_alone(self, turns, base);
+        }
+        let sealed: Vec<Turn> = turns.iter().map(Turn::sealed).collect();
+        self.ask(
+            base,
+            |id, trial| Message::Turns { id, trial, turns: &sealed }.line(),
+            |line, id| acts(line, id, turns.len()),
+        )
+    }
+}
+
+/// One process for each robot, so that none can know what another was told.
+struct Isolated {
+    program: Arc<Program>,
+    robots: BTreeMap<u32, ProgramSession>,
+    trial: Option<(u64, String)>,
+}
+
+impl Session for Isolated {
+    fn reset(&mut self, start: &TrialStart<'_>) -> Result<(), PolicyError> {
+        self.trial = Some((start.number, start.scenario.to_owned()));
+        self.robots.values_mut().try_for_each(|robot| robot.reset(start))
+    }
+
+    fn decide(&mut self, _: &Asked<'_>) -> Result<Decision, PolicyError> {
+        Err(PolicyError::NoRule)
+    }
+
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        let mut acts = Vec::new();
+        for turn in turns {
+            let robot = match self.robots.entry(turn.robot) {
+                Entry::Occupied(robot) => robot.into_mut(),
+                Entry::Vacant(place) => {
+                    let mut robot = ProgramSession::open(&self.program)?;
+                    if let Some((number, scenario)) = &self.trial {
+                        robot.reset(&TrialStart { scenario, number: *number })?;
+                    }
+                    place.insert(robot)
+                }
+            };
+            acts.extend(robot.act(std::slice::from_ref(turn), base)?);
+        }
+        Ok(acts)
     }
 }
 

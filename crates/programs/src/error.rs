@@ -6,11 +6,16 @@ use teaming::schema::since;
 use teaming::{AssignmentError, PolicyError, SCHEMA_VERSION};
 use thiserror::Error;
 
-/// Version of the lines between the command and a program.
-pub(crate) const PROTOCOL: u64 = 1;
-
 /// So many bytes of a line are shown.
 pub(crate) const SHOWN_BYTES: usize = 200;
+
+/// What a program answers by a protocol, as the end of a sentence.
+fn spoken(protocol: u64) -> &'static str {
+    match protocol {
+        1 => ", in which questions get decisions; a program that speaks 2 stands behind `by`",
+        _ => ", in which turns of robots get acts",
+    }
+}
 
 /// What is meant by a command that is a file of this folder.
 fn hint(program: &str) -> String {
@@ -69,8 +74,8 @@ pub(crate) enum Complaint {
     NotFinite(&'static str),
     #[error("it sent a message whose type is {found}, expected {expected}")]
     Type { found: String, expected: &'static str },
-    #[error("its hello speaks protocol {0}; this program speaks protocol {PROTOCOL}")]
-    Protocol(String),
+    #[error("its hello speaks protocol {found}; here it must speak protocol {expected}{}", spoken(*expected))]
+    Protocol { found: String, expected: u64 },
     #[error("its hello has schema_version {0}; this program has questions of version {SCHEMA_VERSION}{since}",
         since = since(.0))]
     Schema(String),
@@ -80,8 +85,8 @@ pub(crate) enum Complaint {
     Changed { before: String, now: String },
     #[error("it answered question {found}, expected an answer to question {expected}")]
     Id { found: String, expected: u64 },
-    #[error("its decision cannot be read: {0}")]
-    Decision(String),
+    #[error("its answer to the {to} cannot be read: {reason}")]
+    Answer { to: &'static str, reason: String },
     #[error("its decision does not answer the question: {0}")]
     Assignment(AssignmentError),
     #[error("it gave up: {0}")]

@@ -14,7 +14,7 @@ pub mod templates;
 mod unique;
 
 pub use consent::{Consent, Unknown};
-pub use driver::{Launch, kind, names};
+pub use driver::{Launch, add_names, add_to};
 pub use guard::guard;
 pub use living::end_all;
 pub use options::quoted;

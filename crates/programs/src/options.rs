@@ -32,6 +32,8 @@ teaming::options! {
         pub(crate) sources: Vec<String> = Vec::new(),
         /// Names of variables of the environment that the program gets, besides the usual ones.
         pub(crate) env: Vec<String> = Vec::new(),
+        /// Whether each robot has a process of its own, behind `by`.
+        pub(crate) isolate: bool = false,
     }
 }
 
@@ -44,6 +46,8 @@ pub(crate) enum OptionsError {
     Time { field: &'static str },
     #[error("sources: {pattern:?} is no pattern of files: {reason}")]
     Pattern { pattern: String, reason: &'static str },
+    #[error("isolate: must be false for a policy; only behind `by` are there robots to keep apart")]
+    Isolate,
     #[error("env: must be names of variables, found {0:?}")]
     Variable(String),
 }

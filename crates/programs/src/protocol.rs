@@ -1,15 +1,35 @@
-//! Protocol 1: each message is one line with a JSON object. Answers may be written as R, MATLAB and Lua write
+//! Protocols 1 and 2: each message is one line with a JSON object. By protocol 1, a question gets a decision;
+//! by protocol 2, turns of robots get their acts. Answers may be written as R, MATLAB and Lua write
 //! them: whole numbers as `5.0`, a group of one as a number, an empty group as null.
 
 use serde::Serialize;
 use serde_json::{Map, Value};
-use teaming::{Decision, Question, SCHEMA_VERSION};
+use teaming::{Act, Decision, Question, SCHEMA_VERSION, Turn};
 
-use crate::error::{Complaint, PROTOCOL};
+use crate::error::Complaint;
 use crate::unique::Unique;
 
 /// Largest number up to which every whole number is a number of JSON in every language.
 const MOST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// What a program answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Speaks {
+    /// Questions, with decisions.
+    Decisions,
+    /// Turns of robots, with what they do.
+    Acts,
+}
+
+impl Speaks {
+    /// Version of the lines between the command and a program.
+    pub(crate) fn version(self) -> u64 {
+        match self {
+            Self::Decisions => 1,
+            Self::Acts => 2,
+        }
+    }
+}
 
 /// What a program is told.
 #[derive(Serialize)]
@@ -28,6 +48,11 @@ pub(crate) enum Message<'a> {
         trial: Option<Trial<'a>>,
         question: &'a Question,
     },
+    Turns {
+        id: u64,
+        trial: Option<Trial<'a>>,
+        turns: &'a [Turn],
+    },
     Bye {},
 }
 
@@ -41,9 +66,9 @@ pub(crate) struct Trial<'a> {
 
 impl<'a> Message<'a> {
     /// The first message.
-    pub(crate) fn hello(policy: &'a str, options: &'a Value, process: u32) -> Self {
-        let usar = env!("CARGO_PKG_VERSION");
-        Self::Hello { protocol: PROTOCOL, schema_versions: [SCHEMA_VERSION], usar, policy, options, process }
+    pub(crate) fn hello(speaks: Speaks, policy: &'a str, options: &'a Value, process: u32) -> Self {
+        let (usar, protocol) = (env!("CARGO_PKG_VERSION"), speaks.version());
+        Self::Hello { protocol, schema_versions: [SCHEMA_VERSION], usar, policy, options, process }
     }
 
     /// The message as a line.
@@ -65,12 +90,13 @@ pub(crate) struct Greeting {
 
 impl Greeting {
     /// Reads a hello.
-    pub(crate) fn read(line: &[u8]) -> Result<Self, Complaint> {
+    pub(crate) fn read(line: &[u8], speaks: Speaks) -> Result<Self, Complaint> {
         let hello = object(line)?;
         check_type(&hello, &["hello"], "\"hello\"")?;
         let is = |field: &str, expected: u64| hello.get(field).and_then(Value::as_u64) == Some(expected);
-        if !is("protocol", PROTOCOL) {
-            return Err(Complaint::Protocol(found(hello.get("protocol"))));
+        let expected = speaks.version();
+        if !is("protocol", expected) {
+            return Err(Complaint::Protocol { found: found(hello.get("protocol")), expected });
         }
         if !is("schema_version", SCHEMA_VERSION.into()) {
             return Err(Complaint::Schema(found(hello.get("schema_version"))));
@@ -99,10 +125,11 @@ fn wrong(field: &'static str, rule: &'static str, value: Option<&Value>) -> Comp
     Complaint::Hello { field, rule, found: found(value) }
 }
 
-/// Reads the answer to a question.
-pub(crate) fn decision(line: &[u8], id: u64, question: &Question) -> Result<Decision, Complaint> {
-    let mut answer = object(line)?;
-    check_type(&answer, &["decision", "error"], "\"decision\" or \"error\"")?;
+/// Reads the answer of a type to the message of a number.
+fn answer(line: &[u8], id: u64, kind: &'static str) -> Result<Map<String, Value>, Complaint> {
+    let answer = object(line)?;
+    let expected = if kind == "acts" { "\"acts\" or \"error\"" } else { "\"decision\" or \"error\"" };
+    check_type(&answer, &[kind, "error"], expected)?;
     if answer.get("id").and_then(Value::as_u64) != Some(id) {
         return Err(Complaint::Id { found: found(answer.get("id")), expected: id });
     }
@@ -110,8 +137,35 @@ pub(crate) fn decision(line: &[u8], id: u64, question: &Question) -> Result<Deci
         let message = answer.get("message").and_then(Value::as_str);
         return Err(Complaint::GaveUp(message.unwrap_or("without a message").to_owned()));
     }
+    Ok(answer)
+}
+
+/// Reads what so many robots do in their turns.
+pub(crate) fn acts(line: &[u8], id: u64, turns: usize) -> Result<Vec<Act>, Complaint> {
+    let wrong = |reason: String| Complaint::Answer { to: "turns", reason };
+    let Some(Value::Array(mut acts)) = answer(line, id, "acts")?.remove("acts") else {
+        return Err(wrong("the field acts is no list".to_owned()));
+    };
+    if acts.len() != turns {
+        return Err(wrong(format!("acts must have one entry for each of the {turns} turns, found {}", acts.len())));
+    }
+    for act in &mut acts {
+        if let Some(Value::Object(groups)) = act.get_mut("joins") {
+            lists_of_lists(groups);
+        }
+    }
+    let read = |(place, act): (usize, Value)| {
+        serde_json::from_value(act).map_err(|error| wrong(format!("acts[{place}]: {error}")))
+    };
+    acts.into_iter().enumerate().map(read).collect()
+}
+
+/// Reads the answer to a question.
+pub(crate) fn decision(line: &[u8], id: u64, question: &Question) -> Result<Decision, Complaint> {
+    let mut answer = answer(line, id, "decision")?;
+    let wrong = |reason: &str| Complaint::Answer { to: "question", reason: reason.to_owned() };
     let Some(Value::Object(mut fields)) = answer.remove("decision") else {
-        return Err(Complaint::Decision("the field decision is no object".to_owned()));
+        return Err(wrong("the field decision is no object"));
     };
     fields.entry("schema_version").or_insert_with(|| SCHEMA_VERSION.into());
     if let Some(Value::Object(assignment)) = fields.get_mut("assignment") {
@@ -121,7 +175,7 @@ pub(crate) fn decision(line: &[u8], id: u64, question: &Question) -> Result<Deci
     let decision = Decision::from_json(&text).map_err(|error| {
         let reason = error.to_string(); // its place is one in `text`, which nobody sees
         let end = reason.rfind(" at line ").unwrap_or(reason.len());
-        Complaint::Decision(reason[..end].to_owned())
+        wrong(&reason[..end])
     })?;
     decision.assignment.check(question).map_err(Complaint::Assignment)?;
     Ok(decision)

@@ -92,6 +92,11 @@ pub(crate) fn retry_s() -> f64 {
     30.0
 }
 
+/// Longest time in which robots talk before they go, in seconds.
+pub(crate) fn deadline_s() -> f64 {
+    30.0
+}
+
 impl Default for MissionRules {
     fn default() -> Self {
         Self {

@@ -214,10 +214,8 @@ ron_tree::limits! {
     REST_RESERVE: "mission.rest_reserve" = 0, 10;
     /// Time between two attempts to form groups, in seconds.
     RETRY_S: "mission.decides.Robots.retry_s" = 1, 3_600;
-    /// Exchanges of what robots have heard.
-    EXCHANGES: "mission.decides.Robots.by.Gossip.exchanges" = 1, 100;
-    /// Time between two exchanges, in seconds.
-    EXCHANGE_S: "mission.decides.Robots.by.Gossip.every_s" = 0, 600;
+    /// Longest time of a negotiation, in seconds.
+    DEADLINE_S: "mission.decides.Robots.deadline_s" = 0, 3_600;
     /// Time at rest, in seconds.
     REST_S: "mission.rest_s" = 0, 86_400;
     /// Time to load a rescuee, in seconds.

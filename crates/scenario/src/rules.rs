@@ -2,7 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use teaming::GroupSizes;
+use teaming::{GroupSizes, Undecided};
 
 use super::checker::Checker;
 use super::file::ScenarioFile;
@@ -162,12 +162,16 @@ pub enum Decider {
     /// Each robot for itself, by what it knows of the others: it groups the team as the policy says, and
     /// joins the group that it would be in. What robots say of themselves, they say to all.
     Robots {
-        /// How robots come to know of each other before they decide.
-        #[serde(default)]
-        by: Exchange,
         /// Whose draws a policy makes that draws.
         #[serde(default)]
         coin: Coin,
+        /// Longest time in which robots talk before they go, in seconds. How they talk stands behind `by` in
+        /// the policy.
+        #[serde(default = "crate::defaults::deadline_s")]
+        deadline_s: f64,
+        /// What becomes of a robot that has not decided by then.
+        #[serde(default)]
+        undecided: Undecided,
         /// A team of which nobody went decides again after this time, in seconds.
         #[serde(default = "crate::defaults::retry_s")]
         retry_s: f64,
@@ -180,22 +184,6 @@ impl Decider {
     pub fn is_base(&self) -> bool {
         matches!(self, Self::Base)
     }
-}
-
-/// How robots come to know of each other before they decide.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-pub enum Exchange {
-    /// Each says once how it is, and decides by what it has heard. The default.
-    #[default]
-    Alone,
-    /// The same; then each says to all what it has heard of all, several times, and the newest report counts.
-    Gossip {
-        /// How often.
-        exchanges: u32,
-        /// Time from one to the next, and to the decision, in seconds.
-        #[serde(default)]
-        every_s: f64,
-    },
 }
 
 /// Whose draws a policy makes where robots decide.

@@ -1,13 +1,18 @@
-//! Policies as one text: `RULE`, `RULE <- ESTIMATOR` or `RULE <- ESTIMATOR | USE`.
+//! Policies as one text: `RULE`, `RULE <- ESTIMATOR` or `RULE <- ESTIMATOR | USE`, and behind each of them, if
+//! robots that decide are to talk first, `by PROTOCOL`.
 
 use std::sync::Arc;
 
+use crate::by::By;
 use crate::guided::Guided;
 use crate::made::{Made, MadePolicy};
 use crate::registry::{Registry, parts};
 use crate::registry_error::RegistryError;
 use crate::session::Session;
 use crate::trust_use::TrustUse;
+
+/// What stands before a protocol.
+const BY: &str = " by ";
 
 /// The parts of a policy as they are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,16 +21,25 @@ pub struct Written<'t> {
     pub rule: &'t str,
     /// What stands behind the arrow: an estimator with its options, and the use of its trust after a bar.
     pub guide: Option<&'t str>,
+    /// What stands behind `by`: a protocol with its options.
+    pub protocol: Option<&'t str>,
 }
 
 impl<'t> Written<'t> {
-    /// Takes a text apart. Arrows in brackets and in quotes do not count.
+    /// Takes a text apart. What is in brackets and in quotes does not count.
     #[must_use]
     pub fn of(text: &'t str) -> Self {
-        match outside(text, "<-") {
-            Some(at) => Self { rule: text[..at].trim(), guide: Some(text[at + 2..].trim()) },
-            None => Self { rule: text.trim(), guide: None },
-        }
+        let text = text.trim();
+        let (text, protocol) = match outside(text, BY) {
+            Some(at) => (&text[..at], Some(text[at + BY.len()..].trim())),
+            None if text.starts_with("by ") => ("", Some(text[3..].trim())),
+            None => text.strip_suffix(" by").map_or((text, None), |rule| (rule, Some(""))),
+        };
+        let (rule, guide) = match outside(text, "<-") {
+            Some(at) => (&text[..at], Some(text[at + 2..].trim())),
+            None => (text, None),
+        };
+        Self { rule: rule.trim(), guide, protocol }
     }
 }
 
@@ -33,17 +47,44 @@ impl Registry {
     /// Makes a policy from one text: `DIS`, `RNE(score: Sum)`, `HP_DIS <- Kalman`, `RNE <- Both(level:
     /// Kalman, trust: Brs) | Exclude(below: 0.3)`. A policy behind an estimator is asked what the estimator
     /// thinks of the team. Without an arrow it is asked the question as it is, which is what `<- LastReport`
-    /// means as well. `Ignore` is the default of the use.
+    /// means as well. `Ignore` is the default of the use. Behind `by` stands how robots talk before they
+    /// decide: `HP_DIS by Gossip(exchanges: 2)`; a protocol that needs no rule may stand alone.
     ///
     /// # Errors
-    /// Those of [`Registry::make`] and of [`Registry::estimator`]; a use that there is not; or an arrow of a
-    /// driver that plays the running trial on, and looks at no level of the question.
+    /// Those of [`Registry::make`], [`Registry::estimator`] and [`Registry::protocol`]; a use that there is
+    /// not; or an arrow or a protocol of a driver that plays the running trial on.
     pub fn parse(&self, text: &str) -> Result<MadePolicy, RegistryError> {
         let written = Written::of(text);
+        match written.protocol {
+            Some(protocol) => self.parse_by(protocol, written, text),
+            None => self.parse_rule(written, text),
+        }
+    }
+
+    fn parse_by(&self, protocol: &str, rule: Written<'_>, text: &str) -> Result<MadePolicy, RegistryError> {
+        let protocol = self.protocol(protocol)?;
+        let is_alone = rule.rule.is_empty() && rule.guide.is_none();
+        let rule = (!is_alone).then(|| self.parse_rule(Written { protocol: None, ..rule }, text)).transpose()?;
+        if let Some(rule) = rule.as_ref().filter(|rule| rule.it.needs_trial()) {
+            let reason = format!("policy {}: it plays the running trial on, which no robot can", rule.name);
+            return Err(RegistryError::Arrow { text: text.trim().to_owned(), reason });
+        }
+        let with = |part: &dyn Fn(&MadePolicy) -> String, of_protocol: String| {
+            let rule = rule.as_ref().map(part).unwrap_or_default();
+            format!("{rule} by {of_protocol}").trim().to_owned()
+        };
+        let label = with(&|rule| rule.label.clone(), protocol.label.clone());
+        let options =
+            with(&|rule| rule.options.clone(), format!("{}{}", protocol.name, protocol.options));
+        let name = rule.as_ref().unwrap_or(&protocol).name.clone();
+        Ok(Made { name, label, options, it: Arc::new(By { rule, protocol }), sources: None })
+    }
+
+    fn parse_rule(&self, written: Written<'_>, text: &str) -> Result<MadePolicy, RegistryError> {
         let refused = |reason: String| RegistryError::Arrow { text: text.trim().to_owned(), reason };
         let [name, options] = parts(written.rule);
         let Some(guide) = written.guide else {
-            if outside(text, "|").is_some() {
+            if outside(written.rule, "|").is_some() {
                 return Err(refused(
                     "`|` must stand behind an estimator: RULE <- ESTIMATOR | USE".to_owned(),
                 ));
@@ -120,6 +161,10 @@ mod tests {
         for text in ["A(then: \"B <- C\")", "A(b: (c <- d))", "A(b: \"\\\" <- \")"] {
             assert_eq!(parts(text), (text, None));
         }
+        let by = Written::of("RNE <- Kalman | Discount by Gossip(exchanges: 2)");
+        assert_eq!((by.rule, by.guide, by.protocol), ("RNE", Some("Kalman | Discount"), Some("Gossip(exchanges: 2)")));
+        let alone = Written::of("by Sorted");
+        assert_eq!((alone.rule, alone.protocol), ("", Some("Sorted")));
         assert_eq!(outside("Kalman(q: 1) | Exclude(below: 0.3)", "|"), Some(13));
     }
 }

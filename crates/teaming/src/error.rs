@@ -203,6 +203,9 @@ pub enum PolicyError {
     /// The policy stands behind the control `Truth`, and is asked where nobody tells it.
     #[error("Truth takes the levels of robots as they really are; here nobody knows them")]
     NoTruth,
+    /// A protocol without a rule is asked for groups.
+    #[error("a protocol groups nobody by itself: write RULE by PROTOCOL, and let robots decide")]
+    NoRule,
     /// The policy is one of another program.
     #[error("this program does not have the policy {policy}: its results can be read, but not run again")]
     Absent {

@@ -7,6 +7,7 @@
 
 pub mod arrow;
 pub mod assignments;
+pub mod by;
 pub mod decision;
 pub mod error;
 pub mod estimate;
@@ -20,6 +21,7 @@ pub mod measure;
 pub mod nested;
 mod options;
 pub mod policy;
+pub mod protocol;
 pub mod question;
 pub mod registry;
 pub mod registry_error;
@@ -39,8 +41,9 @@ pub use levels::{Expected, Level, Rest};
 pub use made::{Made, MadeEstimator, MadeMeasure, MadePolicy};
 pub use measure::{NeedPart, TeamTrust, TrustMeasure};
 pub use policy::Policy;
+pub use protocol::{Act, Choice, Protocol, Say, Stays, Talk, Told, Turn, Undecided};
 pub use question::{GroupSizes, Member, Need, Question, Quota, RandomSeed, SCHEMA_VERSION, Task};
-pub use registry::{EstimatorKind, Kind, Makes, MeasureKind, PolicyKind, Registry};
+pub use registry::{EstimatorKind, Kind, Makes, MeasureKind, PolicyKind, ProtocolKind, Registry};
 pub use registry_error::RegistryError;
 pub use said::{EnergyOutcome, SaidRounds, Used};
 pub use session::{Asked, Basis, Deadline, Driver, Session, TrialStart};

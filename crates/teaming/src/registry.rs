@@ -1,4 +1,4 @@
-//! The registry: policies, trust measures and estimators by name, each with its options. It is a value:
+//! The registry: policies, trust measures, estimators and protocols by name, each with its options. It is a value:
 //! whoever has one adds kinds to it, and kinds look into the registry that makes them.
 
 use std::collections::BTreeMap;
@@ -16,12 +16,13 @@ use crate::policy::Policy;
 use crate::registry_error::{Entry, RegistryError};
 use crate::session::{Absent, Driver, Pure};
 
-/// Policies, trust measures and estimators by name.
+/// Policies, trust measures, estimators and protocols by name.
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
     policies: Vec<PolicyKind>,
     measures: Vec<MeasureKind>,
     estimators: Vec<EstimatorKind>,
+    protocols: Vec<ProtocolKind>,
     /// See [`Registry::choose_measure`].
     chosen: Option<MadeMeasure>,
 }
@@ -51,6 +52,14 @@ impl Registry {
         add(&mut self.estimators, kind, Entry::Estimator)
     }
 
+    /// Adds a protocol.
+    ///
+    /// # Errors
+    /// The name is taken.
+    pub fn add_protocol(&mut self, kind: ProtocolKind) -> Result<(), RegistryError> {
+        add(&mut self.protocols, kind, Entry::Protocol)
+    }
+
     /// All kinds of policies, in the order in which they were added.
     #[must_use]
     pub fn kinds(&self) -> &[PolicyKind] {
@@ -67,6 +76,12 @@ impl Registry {
     #[must_use]
     pub fn estimators(&self) -> &[EstimatorKind] {
         &self.estimators
+    }
+
+    /// All kinds of protocols, in the order in which they were added.
+    #[must_use]
+    pub fn protocols(&self) -> &[ProtocolKind] {
+        &self.protocols
     }
 
     /// The names of all policies.
@@ -90,6 +105,14 @@ impl Registry {
     /// Those of [`Registry::make`].
     pub fn estimator(&self, text: &str) -> Result<MadeEstimator, RegistryError> {
         self.made(&self.estimators, Entry::Estimator, parts(text))
+    }
+
+    /// Makes a protocol from one text: `Gossip(exchanges: 3)`.
+    ///
+    /// # Errors
+    /// Those of [`Registry::make`].
+    pub fn protocol(&self, text: &str) -> Result<MadePolicy, RegistryError> {
+        self.made(&self.protocols, Entry::Protocol, parts(text))
     }
 
     /// Makes a trust measure from one text: `RNE`, `RNE(sort: true)`.
@@ -154,6 +177,9 @@ pub type MeasureKind = Kind<dyn TrustMeasure>;
 
 /// A kind of estimator: its name, what it does, and its options.
 pub type EstimatorKind = Kind<dyn Estimator>;
+
+/// A kind of protocol: its name, how robots talk by it, and its options.
+pub type ProtocolKind = Kind<dyn Driver>;
 
 /// An entry of a registry: `T` is what it makes.
 pub struct Kind<T: ?Sized> {

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::error::PolicyError;
 
-/// A policy, trust measure or estimator that cannot be made.
+/// A policy, trust measure, estimator or protocol that cannot be made.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RegistryError {
@@ -40,7 +40,7 @@ pub enum RegistryError {
         /// The options with their defaults.
         options: String,
     },
-    /// What stands behind the arrow of a policy is wrong.
+    /// What stands behind the arrow of a policy, or behind `by`, is wrong.
     #[error("{text}: {reason}")]
     Arrow {
         /// The policy as it was written.
@@ -67,6 +67,8 @@ pub enum Entry {
     TrustMeasure,
     /// An estimator.
     Estimator,
+    /// A protocol.
+    Protocol,
 }
 
 impl Entry {
@@ -75,6 +77,7 @@ impl Entry {
             Self::Policy => "policies",
             Self::TrustMeasure => "trust measures",
             Self::Estimator => "estimators",
+            Self::Protocol => "protocols",
         }
     }
 }
@@ -85,6 +88,7 @@ impl fmt::Display for Entry {
             Self::Policy => "policy",
             Self::TrustMeasure => "trust measure",
             Self::Estimator => "estimator",
+            Self::Protocol => "protocol",
         })
     }
 }

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::decision::Decision;
 use crate::error::PolicyError;
 use crate::policy::Policy;
+use crate::protocol::{Act, Turn, each_alone};
 use crate::question::{Member, Question};
 use crate::truth::Truth;
 
@@ -110,6 +111,15 @@ pub trait Session: Send {
     /// # Errors
     /// The question cannot be answered, or not before the deadline.
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError>;
+
+    /// Lets robots that decide for themselves act, each in its turn, in the order of their ids. `base` is what
+    /// the base would be asked. Without a protocol, each decides at once, alone.
+    ///
+    /// # Errors
+    /// A robot cannot act, or not before the deadline.
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        each_alone(self, turns, base)
+    }
 }
 
 /// A trial that begins.
@@ -243,6 +253,10 @@ impl<S: Session + ?Sized> Session for &mut S {
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
         (**self).decide(asked)
     }
+
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        (**self).act(turns, base)
+    }
 }
 
 /// A session that gets of the truth and of the trial what its driver has declared.
@@ -258,6 +272,12 @@ impl Declared {
         let (needs_truth, needs_trial) = (driver.needs_truth(), driver.needs_trial());
         Ok(Self { it: driver.open()?, needs_truth, needs_trial })
     }
+
+    fn declared<'a>(&self, asked: &Asked<'a>) -> Asked<'a> {
+        let truth = asked.truth.filter(|_| self.needs_truth);
+        let trial = asked.trial.filter(|_| self.needs_trial);
+        Asked { truth, trial, is_declared: true, ..*asked }
+    }
 }
 
 impl Session for Declared {
@@ -266,9 +286,13 @@ impl Session for Declared {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        let truth = asked.truth.filter(|_| self.needs_truth);
-        let trial = asked.trial.filter(|_| self.needs_trial);
-        self.it.decide(&Asked { truth, trial, is_declared: true, ..*asked })
+        let declared = self.declared(asked);
+        self.it.decide(&declared)
+    }
+
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        let declared = self.declared(base);
+        self.it.act(turns, &declared)
     }
 }
 

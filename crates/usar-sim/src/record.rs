@@ -1,11 +1,12 @@
 //! The record of a trial: its results once it is over.
 
 use serde::{Deserialize, Serialize};
-use teaming::{Assignment, Decision, Evidence, Extent, Member, Question, RoundOutcome};
+use teaming::{Decision, Evidence, Extent, Member, Question, RoundOutcome};
 
 use crate::conflict::Delay;
 use crate::hash::HashChain;
 use crate::invariant::Overlaps;
+pub use crate::mission::Join;
 use crate::metrics::{Counts, CutOff, Finds, RoundRecord, TaskTotals};
 use crate::model::{Liar, Model, TelemetryModel};
 use crate::robot::Condition;
@@ -121,17 +122,6 @@ pub struct DecisionRecord {
     /// How each robot that took part decided, where robots did: the answer is then what came of it.
     #[serde(default)]
     pub joins: Vec<Join>,
-}
-
-/// How a robot decided.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Join {
-    /// The robot.
-    pub robot: u32,
-    /// The groups as it sees them. It joined its own.
-    pub sees: Assignment,
-    /// How old what it last heard of each other member was, in seconds; none for whom it never heard.
-    pub ages_s: Vec<Option<f64>>,
 }
 
 impl DecisionRecord {

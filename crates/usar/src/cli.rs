@@ -13,7 +13,7 @@ use experiments::experiment::{SOURCE, with_oracle};
 use experiments::{Failure, note_panic, panic_message};
 use programs::{Consent, Launch, Unknown};
 use tables::{fold_at, show_as};
-use teaming::{PolicyKind, Registry};
+use teaming::Registry;
 use terminal_size::terminal_size_of;
 
 use crate::arguments::format_of;
@@ -114,7 +114,10 @@ fn run_as<C: CommandLine>(
     let longest = verb.try_get_one::<f64>("max_trial_s").ok().flatten();
     let longest = longest.and_then(|seconds| Duration::try_from_secs_f64(*seconds).ok());
     // A caller's policy of the same name stays.
-    let _ = registry.add(programs_of(&cli, &typed(verb), longest, guard));
+    let _ = match launch_of(&cli, &typed(verb), longest, guard) {
+        Some(launch) => programs::add_to(&mut registry, launch),
+        None => programs::add_names(&mut registry),
+    };
     let run = std::panic::AssertUnwindSafe(|| cli.execute(&registry)?.print());
     let result = std::panic::catch_unwind(run)
         .unwrap_or_else(|panic| Err(Failure::run(format!("internal error: {}", panic_message(&*panic)))));
@@ -135,22 +138,22 @@ fn typed(verb: &ArgMatches) -> Vec<String> {
     all.map(|word| word.to_string_lossy().into_owned()).collect()
 }
 
-/// The policies that are programs, as a command may start them: those in its own words, those that this user
-/// has allowed, and others if it is told so.
-fn programs_of(
+/// How a command may start policies that are programs: those in its own words, those that this user has
+/// allowed, and others if it is told so. None for a command that only reads.
+fn launch_of(
     cli: &impl CommandLine,
     typed: &[String],
     longest: Option<Duration>,
     guard: Vec<OsString>,
-) -> PolicyKind {
+) -> Option<Launch> {
     const HINT: &str = "--run-programs allows it";
     if !cli.asks_policies() {
-        return programs::names();
+        return None;
     }
     let unknown = if cli.runs_programs() { Unknown::Allow } else { Unknown::Ask(HINT) };
     let consent = Consent::new(typed.iter().map(String::as_str), unknown, |line| tell(line), &STOP);
     let stop = Arc::clone(&STOP);
-    programs::kind(Launch { stop, begin: stop_on_signals, longest, consent, guard })
+    Some(Launch { stop, begin: stop_on_signals, longest, consent, guard })
 }
 
 /// For a file or folder in the place of a command: a sentence with the command that is meant.

@@ -166,7 +166,8 @@ impl Belief {
             | Statement::MateGoes(_)
             | Statement::RoundWas(_)
             | Statement::StaysOut { .. }
-            | Statement::HasHeard(_) => false,
+            | Statement::HasHeard(_)
+            | Statement::Protocol { .. } => false,
         }
     }
 

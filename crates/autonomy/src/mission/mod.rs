@@ -11,6 +11,7 @@ mod regroup;
 mod round;
 mod scene;
 mod settle;
+mod talks;
 mod work;
 
 use serde::{Deserialize, Serialize};
@@ -23,11 +24,13 @@ pub use progress::Progress;
 pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause};
 pub use scene::Scene;
 pub use settle::Sharing;
+pub use talks::{Deed, Endless, Join, Moment};
 
 use crate::belief::Holder;
 use crate::event::{Event, TurnBackCause};
 use crate::ids::RobotId;
 use crate::model::Model;
+use talks::Talks;
 
 /// How near a robot comes to its place at home or at a rest place, in metres.
 const SLOT_M: f32 = 0.15;
@@ -42,8 +45,8 @@ const GIVE_UP_S: f64 = 2.0;
 #[derive(Debug, Clone, Serialize, Deserialize)]
 struct Pending {
     question: Question,
-    /// What each fit robot asks itself, where robots decide.
-    joins: Vec<Question>,
+    /// What each robot asks itself whose turn it is, where robots decide.
+    turns: Vec<Question>,
     /// Robots that must rest during the round, and why.
     unfit: Vec<(RobotId, TurnBackCause)>,
 }
@@ -56,16 +59,6 @@ struct Gathered {
     fit: Vec<RobotId>,
     /// Those that must rest, and why.
     unfit: Vec<(RobotId, TurnBackCause)>,
-}
-
-/// What robots at home exchange before they decide.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Talks {
-    who: Gathered,
-    /// How often they say what they have heard.
-    left: u32,
-    /// The step in which they do so, or decide.
-    next_step: u64,
 }
 
 /// The state of the mission of one trial.
@@ -106,11 +99,6 @@ impl Mission {
     /// The question that waits for an assignment, if there is one.
     pub fn question(&self) -> Option<&Question> {
         self.pending.as_ref().map(|pending| &pending.question)
-    }
-
-    /// What each fit robot asks itself, where robots decide and a question waits.
-    pub fn joins(&self) -> &[Question] {
-        self.pending.as_ref().map_or(&[], |pending| &pending.joins)
     }
 
     /// The state of the mission without the claims and the talks: a part of the hash chain.

@@ -1,6 +1,6 @@
 //! Between rounds: the end of one, the opening of the next, and the departure of the groups.
 
-use scenario::{Decider, Exchange, LevelSource};
+use scenario::{Decider, LevelSource};
 use teaming::{Assignment, Question};
 
 use super::question::question;
@@ -70,32 +70,15 @@ impl Mission {
         let who = self.gathered(scene);
         match scene.model.mission.decides {
             Decider::Base => self.ask(who, scene),
-            Decider::Robots { by, .. } => {
+            Decider::Robots { .. } if who.fit.is_empty() => self.ask(who, scene),
+            Decider::Robots { .. } => {
                 let out: Vec<RobotId> = who.home.iter().filter(|id| !who.fit.contains(id)).copied().collect();
                 self.with_telemetry(scene, |telemetry, now, log| telemetry.tell_who_stays(&out, now, log));
-                let left = if let Exchange::Gossip { exchanges, .. } = by { exchanges } else { 0 };
-                self.talks = Some(Talks { who, left, next_step: scene.step });
+                self.talks = Some(Talks::begin(who, scene.step));
                 self.talk(scene);
             }
         }
         restocked
-    }
-
-    /// Robots say what they have heard, when it is time, and decide at last.
-    pub(super) fn talk(&mut self, scene: &mut Scene) {
-        let Some(mut talks) = self.talks.take() else { return };
-        while talks.next_step <= scene.step {
-            if talks.left == 0 {
-                return self.ask(talks.who, scene);
-            }
-            self.with_telemetry(scene, Telemetry::exchange);
-            talks.left -= 1;
-            if let Decider::Robots { by: Exchange::Gossip { every_s, .. }, .. } = scene.model.mission.decides
-            {
-                talks.next_step += scene.model.steps_in(every_s);
-            }
-        }
-        self.talks = Some(talks);
     }
 
     /// The robots at home that can act.
@@ -134,23 +117,11 @@ impl Mission {
 
     /// Asks how the fit robots are to be grouped. If no robot is fit, assigns empty groups without a
     /// question.
-    fn ask(&mut self, mut who: Gathered, scene: &mut Scene) {
-        if let Some(telemetry) = scene.telemetry.as_deref_mut() {
-            telemetry.close_rounds_of_peers(scene.beliefs.ledger.rounds(), scene.model);
-            telemetry.note_question(self.round);
-        }
-        // Robots may have been lost while they talked.
-        let team = &scene.beliefs.team;
-        who.home.retain(|id| team[id.index()].is_able());
-        who.fit.retain(|id| team[id.index()].is_able());
-        who.unfit.retain(|(id, _)| team[id.index()].is_able());
+    fn ask(&mut self, who: Gathered, scene: &mut Scene) {
+        self.note_question(true, scene);
         let question = self.question_of(None, &who, scene);
-        let robots_decide = !scene.model.mission.decides.is_base();
-        let asking = who.fit.iter().filter(|_| robots_decide);
-        let joins = asking.map(|robot| self.question_of(Some(*robot), &who, scene)).collect();
-        self.crew.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let is_empty = question.members.is_empty();
-        self.pending = Some(Pending { question, joins, unfit: who.unfit });
+        self.pending = Some(Pending { question, turns: Vec::new(), unfit: who.unfit });
         if is_empty {
             self.assign(&Assignment::new(vec![Vec::new(); self.crew.groups.len()]), scene);
         }
@@ -158,7 +129,7 @@ impl Mission {
 
     /// The question of the base about the fit robots, or that of a robot about those at home of which it does
     /// not know that they stay out. Whom it never heard is a member like any other of its role.
-    fn question_of(&self, asker: Option<RobotId>, who: &Gathered, scene: &Scene) -> Question {
+    pub(super) fn question_of(&self, asker: Option<RobotId>, who: &Gathered, scene: &Scene) -> Question {
         let (model, team) = (scene.model, &scene.beliefs.team);
         let telemetry = scene.telemetry.as_deref();
         let present = match (asker, telemetry) {
@@ -182,9 +153,11 @@ impl Mission {
     }
 
     /// Sends the groups out, and the unfit robots to rest. The assignment must answer the question that waits
-    /// for one.
+    /// for one, or be what came of a negotiation, which ends.
     pub fn assign(&mut self, assignment: &Assignment, scene: &mut Scene) {
-        let Some(Pending { unfit, joins, .. }) = self.pending.take() else { return };
+        let Some(Pending { unfit, .. }) = self.pending.take() else { return };
+        let robots_decided = self.talks.take().is_some();
+        self.crew.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
         let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
         if let Some(telemetry) = scene.telemetry.as_deref_mut() {
@@ -199,7 +172,7 @@ impl Mission {
         }
         unfit.iter().for_each(|(id, cause)| self.crew.send_to_rest(*id, *cause, scene));
         if let Decider::Robots { retry_s, .. } = scene.model.mission.decides
-            && !joins.is_empty()
+            && robots_decided
             && !self.crew.groups.iter().any(|group| group.at_work)
         {
             self.waits_until = scene.step + scene.model.steps_in(retry_s);

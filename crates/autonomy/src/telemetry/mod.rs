@@ -26,6 +26,7 @@ use teaming::{Evidence, Member, MemberOutcome, RoundOutcome};
 pub use channel::{Channel, Ends, Link};
 pub use heard::{Heard, named};
 pub use known::known;
+pub use peers::Mail;
 pub(crate) use peers::seed_of;
 pub use speech::in_turn;
 
@@ -96,7 +97,7 @@ impl Now<'_> {
     }
 
     /// What a robot says now.
-    fn report(&self, robot: RobotId, says: Statement) -> Report {
+    pub(crate) fn report(&self, robot: RobotId, says: Statement) -> Report {
         Report { from: Speaker::Robot(robot), says, at_step: self.step, sd_m: 0.0 }
     }
 }
@@ -191,9 +192,13 @@ impl Telemetry {
         self.deliver(now.time_s(), log);
     }
 
-    /// A question is asked: what it has of the evidence.
-    pub(crate) fn note_question(&mut self, round: u32) {
+    /// A question is asked: what it has of the evidence. One that is not the first of its negotiation stands
+    /// for the one before.
+    pub(crate) fn note_question(&mut self, round: u32, is_first: bool) {
         for heard in self.hearers() {
+            if !is_first {
+                heard.extents.pop();
+            }
             let extent = heard.log.extent(round, heard.known_since.clone());
             heard.extents.push(extent);
         }

@@ -23,8 +23,23 @@ pub(super) struct Peer {
     out_of: Vec<u32>,
     /// What robots said of themselves at the end of rounds.
     trips: Vec<RobotRound>,
+    /// What it was told in a negotiation, and has not taken note of yet.
+    mail: Vec<Mail>,
     /// The hash of all that was heard.
     digest: u128,
+}
+
+/// What a robot is told in a negotiation.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Mail {
+    /// Who says it.
+    pub from: RobotId,
+    /// The round about which they negotiate.
+    pub round: u32,
+    /// What, in JSON.
+    pub what: String,
+    /// When it was said, in seconds.
+    pub sent_s: f64,
 }
 
 impl Peer {
@@ -35,6 +50,7 @@ impl Peer {
             heard: Heard::nothing(robots, threshold),
             out_of: vec![0; robots],
             trips: Vec::new(),
+            mail: Vec::new(),
             digest: 0,
         };
         (0..robots).filter(|_| !model.mission.decides.is_base()).map(|_| nothing()).collect()
@@ -42,7 +58,7 @@ impl Peer {
 
     /// What counts in the hash chain.
     pub(super) fn to_hash(&self) -> impl Serialize + '_ {
-        (self.digest, self.heard.history.len())
+        (self.digest, self.heard.history.len(), self.mail.len())
     }
 
     /// Hears a message of another, or what the robot itself knows. Of itself nobody tells it anything.
@@ -52,6 +68,9 @@ impl Peer {
         let own = message.to.map_or(u32::MAX, |robot| robot.0);
         match message.report.says {
             Statement::RoundWas(trip) => self.trips.push(trip),
+            Statement::Protocol { round, what } => {
+                self.mail.push(Mail { from: sender, round, what, sent_s: message.sent_s });
+            }
             Statement::StaysOut { round } => self.out_of[sender.index()] = round,
             Statement::HasHeard(Digest { round, levels, out }) => {
                 out.iter().for_each(|robot| self.out_of[robot.index()] = round);
@@ -151,10 +170,33 @@ impl Telemetry {
         self.deliver(now.time_s(), log);
     }
 
-    /// Robots at home say what they have heard of all.
-    pub(crate) fn exchange(&mut self, now: &Now<'_>, log: &mut EventLog) {
-        let is_home = |robot: &&KnownRobot| robot.is_able() && (now.presence)(robot).is_home;
-        let digests: Vec<(&KnownRobot, Digest)> = in_turn(now.team.iter().filter(is_home), now)
+    /// A robot says something in a negotiation, to all or to one.
+    pub(crate) fn say_in_turn(
+        &mut self,
+        report: &Report,
+        to: Option<RobotId>,
+        now: &Now<'_>,
+        log: &mut EventLog,
+    ) {
+        let Some(one) = to else { return self.tell_peers(report, false, now, log) };
+        let hears = |mate: &KnownRobot| report.from != Speaker::Robot(mate.id) && mate.is_able();
+        if now.team.get(one.index()).is_some_and(hears) {
+            self.carry(Parcel { report, to, is_sent: false }, now, log);
+        }
+    }
+
+    /// What a robot was told in the negotiation about this round, and has not taken note of yet. What comes
+    /// too late is forgotten.
+    pub(crate) fn take_mail(&mut self, robot: RobotId, round: u32) -> impl Iterator<Item = Mail> + use<> {
+        let mail = self.peers.get_mut(robot.index()).map(|peer| std::mem::take(&mut peer.mail));
+        mail.unwrap_or_default().into_iter().filter(move |mail| mail.round == round)
+    }
+
+    /// These robots say to all what they have heard of all, and everybody hears what arrives at once.
+    pub(crate) fn end_turn(&mut self, sharing: &[RobotId], now: &Now<'_>, log: &mut EventLog) {
+        self.deliver(now.time_s(), log);
+        let shares = |robot: &&KnownRobot| sharing.contains(&robot.id);
+        let digests: Vec<(&KnownRobot, Digest)> = in_turn(now.team.iter().filter(shares), now)
             .into_iter()
             .map(|robot| (robot, self.digest_of(robot, now)))
             .collect();

@@ -7,7 +7,7 @@ use teaming::arrow::Written;
 use super::cells::{CONFIDENCE, Difference, Lie, deaf_guide, draw, lies};
 use crate::Failure;
 use crate::comparison::Trials;
-use crate::experiment::Experiment;
+use crate::experiment::{Experiment, PolicySpec};
 use crate::sweep::folder::Folder;
 
 /// Metrics of how well an estimator judges, in the order of the table.
@@ -174,7 +174,11 @@ impl Rows<'_> {
         let written = policies[policy].plain();
         let parts = Written::of(&written);
         parts.guide?;
-        policies.iter().position(|other| other.plain() == parts.rule)
+        let is_rule = |other: &PolicySpec| {
+            let (written, with) = (other.plain(), parts.protocol);
+            Written::of(&written) == Written { rule: parts.rule, guide: None, protocol: with }
+        };
+        policies.iter().position(is_rule)
     }
 
     fn price(&self, policy: usize, rule: usize, lie: &Lie) -> Price {

@@ -29,6 +29,8 @@ pub struct PolicySpec {
     options: Vec<(String, String)>,
     /// What stands behind its arrow: an estimator, and the use of its trust.
     guide: Option<String>,
+    /// What stands behind `by`: how its robots talk.
+    protocol: Option<String>,
     /// Text that reads to the same policy.
     written: String,
     made: MadePolicy,
@@ -58,9 +60,10 @@ impl PolicySpec {
             registry.parse(rest).map_err(Failure::input)?;
         }
         let options = parse_options(options)?;
-        let guide =
-            Written::of(rest).guide.map(|guide| guide.split_whitespace().collect::<Vec<_>>().join(" "));
-        let plain = behind(&plain(name, &options), guide.as_deref());
+        let spaced = |part: &str| part.split_whitespace().collect::<Vec<_>>().join(" ");
+        let Written { guide, protocol, .. } = Written::of(rest);
+        let (guide, protocol) = (guide.map(spaced), protocol.map(str::to_owned));
+        let plain = before(&behind(&plain(name, &options), guide.as_deref()), protocol.as_deref());
         let made = registry.parse(&plain).map_err(Failure::input)?;
         if let Some(rule) = label.and_then(|label| broken_rule(label, name, registry)) {
             refuse!("the label before `=` must {rule}, found {text:?}");
@@ -69,7 +72,7 @@ impl PolicySpec {
         let label = label.map_or(plain, str::to_owned);
         let made = made.labelled(&label);
         let measure = registry.measure(&self::plain(name, &options)).ok();
-        Ok(Self { label, name: name.to_owned(), options, guide, written, made, measure })
+        Ok(Self { label, name: name.to_owned(), options, guide, protocol, written, made, measure })
     }
 
     /// The policy.
@@ -119,7 +122,8 @@ impl PolicySpec {
 
     /// The policy without the label; the text reads to the same policy.
     pub fn plain(&self) -> String {
-        behind(&plain(&self.name, &self.options), self.guide.as_deref())
+        let rule = behind(&plain(&self.name, &self.options), self.guide.as_deref());
+        before(&rule, self.protocol.as_deref())
     }
 
     /// The written options, with their values in RON.
@@ -174,6 +178,12 @@ fn plain(name: &str, options: &[(String, String)]) -> String {
 /// A policy behind an estimator.
 fn behind(rule: &str, guide: Option<&str>) -> String {
     guide.map_or_else(|| rule.to_owned(), |guide| format!("{rule} <- {guide}"))
+}
+
+/// A policy before a protocol.
+fn before(rule: &str, protocol: Option<&str>) -> String {
+    let with = |protocol| format!("{rule} by {protocol}").trim().to_owned();
+    protocol.map_or_else(|| rule.to_owned(), with)
 }
 
 fn parse_options(text: &str) -> Result<Vec<(String, String)>, Failure> {

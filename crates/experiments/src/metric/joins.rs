@@ -6,12 +6,12 @@ use usar_sim::record::{DecisionRecord, Join, TrialRecord};
 
 /// Mean share of pairs of robots that saw the same groups.
 pub(super) fn agreement(record: &TrialRecord) -> Option<f64> {
-    let of = |made: &DecisionRecord| {
-        let joins = &made.joins;
-        let pairs = joins.iter().enumerate().flat_map(|(i, a)| joins[i + 1..].iter().map(move |b| (a, b)));
-        share(pairs.map(|(a, b)| a.sees == b.sees))
-    };
-    mean(record.decisions.iter().filter_map(of))
+    mean(record.decisions.iter().filter_map(|made| share(pairs(made).map(|(a, b)| a.agrees_with(b)))))
+}
+
+fn pairs(made: &DecisionRecord) -> impl Iterator<Item = (&Join, &Join)> {
+    let joins = &made.joins;
+    joins.iter().enumerate().flat_map(|(i, a)| joins[i + 1..].iter().map(move |b| (a, b)))
 }
 
 /// Mean number of robots in a group too many.
@@ -34,12 +34,26 @@ fn excess(question: &Question, made: &DecisionRecord) -> usize {
 
 /// Mean age of what robots had heard of each other, in seconds.
 pub(super) fn belief_age(record: &TrialRecord) -> Option<f64> {
-    mean(joins(record).flat_map(|join| join.ages_s.iter().flatten().copied()))
+    mean(joins(record).flat_map(|join| join.ages_s.values().flatten().copied()))
 }
 
 /// Mean share of others of which a robot had never heard.
 pub(super) fn never_heard(record: &TrialRecord) -> Option<f64> {
-    share(joins(record).flat_map(|join| join.ages_s.iter().map(Option::is_none)))
+    share(joins(record).flat_map(|join| join.ages_s.values().map(Option::is_none)))
+}
+
+/// Mean time in which robots agreed on all groups, in seconds, over the decisions in which they did.
+pub(super) fn seconds_to_agree(record: &TrialRecord) -> Option<f64> {
+    let agreed = |made: &&DecisionRecord| {
+        !made.joins.is_empty() && pairs(made).all(|(a, b)| a.agrees_with(b))
+    };
+    let last = |made: &DecisionRecord| made.joins.iter().map(|join| join.after_s).reduce(f64::max);
+    mean(record.decisions.iter().filter(agreed).filter_map(last))
+}
+
+/// Mean share of robots that were out of time when they decided.
+pub(super) fn decided_late(record: &TrialRecord) -> Option<f64> {
+    share(joins(record).map(|join| join.is_late))
 }
 
 /// Messages over the medium.

@@ -2,6 +2,7 @@
 //! process behind. These tests need `python3`; those in another language are left out where it is missing.
 
 mod support;
+mod turns;
 
 mod error_messages;
 mod other_languages;

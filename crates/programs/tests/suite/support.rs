@@ -40,7 +40,7 @@ pub fn registry_until(stop: &Arc<AtomicBool>) -> Registry {
     let consent = Consent::new([], Unknown::Allow, |_| {}, stop).forgetting();
     let launch = Launch { stop: Arc::clone(stop), begin: || {}, longest: None, consent, guard: Vec::new() };
     let mut registry = policies::standard();
-    registry.add(programs::kind(launch)).unwrap();
+    programs::add_to(&mut registry, launch).unwrap();
     registry
 }
 

@@ -1,6 +1,6 @@
 //! Answers in time.
 
-use teaming::{Asked, Deadline, Decision, PolicyError, Session, TrialStart};
+use teaming::{Act, Asked, Deadline, Decision, PolicyError, Session, TrialStart, Turn};
 
 /// A session whose answers are wanted before a deadline.
 pub struct InTime<'d, S> {
@@ -22,5 +22,9 @@ impl<S: Session> Session for InTime<'_, S> {
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
         self.session.decide(&asked.until(self.deadline))
+    }
+
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        self.session.act(turns, &base.until(self.deadline))
     }
 }

@@ -1,7 +1,7 @@
 //! One trial: a scenario and a seed in, a record out, and one interface for decisions.
 //!
 //! [`Simulation::advance`] does a step, or returns the [question](Advance::Asks) how the team is to be
-//! grouped, or what [each robot](Ask::Joins) asks itself. [`Simulation::assign`] and [`Simulation::join`]
+//! grouped, or the [turns](Ask::Turns) of robots that decide. [`Simulation::assign`] and [`Simulation::act`]
 //! take the answers. Policies, programs and people all are [sessions](Session) at this door.
 
 mod charge;
@@ -14,13 +14,14 @@ mod rescue;
 mod setup;
 mod state;
 mod timeline;
+mod turns;
 mod view;
 
 use std::ops::Deref;
 use std::sync::Arc;
 
 use parry2d::math::Vector;
-use teaming::{Asked, Assignment, AssignmentError, Decision, Member, Question, Session};
+use teaming::{Asked, AssignmentError, Decision, Member, PolicyError, Question, Session, Turn};
 use thiserror::Error;
 
 use crate::event::Event;
@@ -45,8 +46,8 @@ pub struct Simulation {
     scratch: Scratch,
     /// The question that waits for an answer, with its history.
     question: Option<Question>,
-    /// What each robot asks itself, where robots decide.
-    joins: Vec<Question>,
+    /// The robots whose turn it is, where robots decide.
+    turns: Vec<Turn>,
     failure: Option<String>,
     invariants: Option<Invariants>,
 }
@@ -67,9 +68,9 @@ pub enum Advance<'s> {
 pub enum Ask<'s> {
     /// How is the team to be grouped? Answered by [`Simulation::assign`].
     Grouping(&'s Question),
-    /// The same, asked by each robot that takes part, as it knows the team: in the order of their ids.
-    /// Answered by [`Simulation::join`]; or by [`Simulation::assign`], which decides over their heads.
-    Joins(&'s [Question]),
+    /// What do these robots do, each of which decides for itself? In the order of their ids. Answered by
+    /// [`Simulation::act`]; or by [`Simulation::assign`], which decides over their heads.
+    Turns(&'s [Turn]),
 }
 
 impl Ask<'_> {
@@ -78,7 +79,7 @@ impl Ask<'_> {
     pub fn round(&self) -> u32 {
         match self {
             Self::Grouping(question) => question.round,
-            Self::Joins(questions) => questions.first().map_or(0, |question| question.round),
+            Self::Turns(turns) => turns.first().map_or(0, |turn| turn.question.round),
         }
     }
 }
@@ -96,6 +97,16 @@ pub enum AssignError {
     /// The assignment does not answer the question.
     #[error(transparent)]
     Refused(#[from] AssignmentError),
+    /// What a robot does cannot be done.
+    #[error("robot {robot}: {field} must {rule}")]
+    Act {
+        /// The robot.
+        robot: u32,
+        /// The field of its act.
+        field: &'static str,
+        /// What the field must be.
+        rule: &'static str,
+    },
 }
 
 impl Simulation {
@@ -112,7 +123,7 @@ impl Simulation {
     /// A trial in this state, with nothing asked, failed or checked yet.
     fn at(setup: Arc<Setup>, state: State) -> Self {
         let scratch = Scratch::default();
-        Self { setup, state, scratch, question: None, joins: Vec::new(), failure: None, invariants: None }
+        Self { setup, state, scratch, question: None, turns: Vec::new(), failure: None, invariants: None }
     }
 
     /// The trial of this scenario and seed that resumes from this state.
@@ -187,8 +198,8 @@ impl Simulation {
     }
 
     fn asks(&self) -> Advance<'_> {
-        let Self { question: Some(question), joins, .. } = self else { return Advance::Running };
-        Advance::Asks(if joins.is_empty() { Ask::Grouping(question) } else { Ask::Joins(joins) })
+        let Self { question: Some(question), turns, .. } = self else { return Advance::Running };
+        Advance::Asks(if turns.is_empty() { Ask::Grouping(question) } else { Ask::Turns(turns) })
     }
 
     /// Answers the question that [`Simulation::advance`] asked.
@@ -209,48 +220,12 @@ impl Simulation {
         Ok(())
     }
 
-    /// Answers what each robot asks itself, in the order of [`Ask::Joins`]: each goes to the group in which
-    /// it sees itself. Groups may so have other sizes than the question says.
-    ///
-    /// # Errors
-    /// Nothing was asked, or a decision does not answer the question of its robot; nothing changes then.
-    pub fn join(&mut self, decisions: &[Decision]) -> Result<(), AssignError> {
-        if self.joins.is_empty() || decisions.len() != self.joins.len() {
-            return Err(AssignError::NotAsked);
-        }
-        let mut assignment = Assignment::new(vec![Vec::new(); self.model().tasks.len()]);
-        let mut joins = Vec::new();
-        for (question, decision) in self.joins.iter().zip(decisions) {
-            let sees = decision.assignment.clone().sorted();
-            sees.check(question)?;
-            let robot = question.asker.unwrap_or_default();
-            match sees.task_of(robot) {
-                Some(task) => assignment.groups[task.index()].push(robot),
-                None => assignment.idle.push(robot),
-            }
-            joins.push(Join { robot, sees, ages_s: self.ages_s(question) });
-        }
-        self.group(Decision::of(assignment), joins);
-        Ok(())
-    }
-
-    /// How old what a robot last heard of the others is, in seconds; none for whom it never heard.
-    fn ages_s(&self, question: &Question) -> Vec<Option<f64>> {
-        let by = RobotId(question.asker.unwrap_or_default());
-        let others = question.members.iter().map(|member| RobotId(member.id)).filter(|id| *id != by);
-        let age = |of| match &self.state.telemetry {
-            Some(telemetry) => telemetry.age_s(by, of, self.time_s()),
-            None => Some(0.0),
-        };
-        others.map(age).collect()
-    }
-
     /// Sends the groups out, and keeps the decision.
     fn group(&mut self, decision: Decision, joins: Vec<Join>) {
         let truth = self.truth();
         let (mission, mut scene) = self.state.scene(&self.setup.model);
         mission.assign(&decision.assignment, &mut scene);
-        self.joins.clear();
+        self.turns.clear();
         if let Some(question) = self.question.take() {
             let question = Question { history: Vec::new(), evidence: None, ..question };
             self.state.listeners.decisions.push(DecisionRecord { question, decision, truth, joins });
@@ -288,21 +263,16 @@ impl Simulation {
 
     /// Lets a session answer what is asked. Without a usable answer, the trial has failed.
     fn answer(&mut self, session: &mut impl Session) {
-        let team = self.team();
-        let mut decide = |question: &Question| {
-            let asked = Asked::of(question).knowing(&team);
-            // A robot that decides for itself cannot play the trial on.
-            let asked = if question.asker.is_some() { asked } else { asked.within(self) };
-            session.decide(&asked).map_err(|error| error.to_string())
-        };
-        let taken = if self.joins.is_empty() {
-            let decision = self.question.as_ref().map(&mut decide).transpose();
-            decision.and_then(|decision| {
-                decision.map_or(Ok(()), |it| self.assign(it).map_err(|error| error.to_string()))
-            })
+        let (team, Some(question)) = (self.team(), &self.question) else { return };
+        let asked = Asked::of(question).knowing(&team);
+        let reason = |error: PolicyError| error.to_string();
+        let taken = if self.turns.is_empty() {
+            let decision = session.decide(&asked.within(self)).map_err(reason);
+            decision.and_then(|decision| self.assign(decision).map_err(|error| error.to_string()))
         } else {
-            let decisions = self.joins.iter().map(decide).collect::<Result<Vec<_>, String>>();
-            decisions.and_then(|decisions| self.join(&decisions).map_err(|error| error.to_string()))
+            // A robot that decides for itself cannot play the trial on.
+            let acts = session.act(&self.turns, &asked).map_err(reason);
+            acts.and_then(|acts| self.act(acts).map_err(|error| error.to_string()))
         };
         if let Err(reason) = taken {
             self.failure = Some(format!("the policy failed: {reason}"));
@@ -443,11 +413,15 @@ impl Simulation {
         Ok(())
     }
 
-    /// Takes the mission's questions, if it has any, and adds the history of earlier rounds.
+    /// Takes the mission's questions, if it has any, and adds the history of earlier rounds. Robots that have
+    /// all decided go.
     fn take_question(&mut self) {
         let mission = &self.state.mission;
         self.question = mission.question().map(|question| self.whole(question));
-        self.joins = mission.joins().iter().map(|question| self.whole(question)).collect();
+        self.turns = self.due();
+        if let Some(joined) = mission.agreed() {
+            self.depart(joined);
+        }
     }
 
     /// A question with the history and the evidence of who asks it.

@@ -220,7 +220,7 @@ fn why_tells_in_sentences_and_names_what_it_cannot_find() {
     let text = succeeds(&usar(here, robots));
     for part in [
         "and each robot decided by RNE: 66 of 66 pairs saw the same groups",
-        "It saw the groups hard ",
+        "it saw the groups hard ",
         "It had heard of the others so long ago: 0: 0.0 s, 1: 0.0 s, 2: 0.0 s, 4: 0.0 s",
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");

@@ -1,4 +1,4 @@
-//! `usar scenario list`: lists the available scenarios, policies, estimators, roles or metrics.
+//! `usar scenario list`: lists the available scenarios, policies, estimators, protocols, roles or metrics.
 
 use clap::ValueEnum;
 use experiments::metric::{Catalogue, Metric};
@@ -11,7 +11,7 @@ use crate::input::load;
 use crate::library;
 use crate::prelude::*;
 
-/// List scenarios, policies, estimators, roles or metrics, a line each
+/// List scenarios, policies, estimators, protocols, roles or metrics, a line each
 #[derive(Debug, Args)]
 #[command(after_help = "\
 A line begins with the name, then a tab and what it is. Roles and metrics are those of a scenario.
@@ -21,6 +21,7 @@ Examples:
   usar scenario list scenarios my-scenarios         those of a folder
   usar scenario list policies                       with their options and defaults
   usar scenario list estimators                     what may stand behind a policy: RNE <- Kalman
+  usar scenario list protocols                      how robots that decide may talk: RNE by Gossip
   usar scenario list roles paper
   usar scenario list metrics warehouse")]
 pub(crate) struct Arguments {
@@ -50,6 +51,8 @@ enum Of {
     Policies,
     /// Estimators of what is true and whom to believe
     Estimators,
+    /// How robots talk before they decide
+    Protocols,
     /// Roles of a scenario
     Roles,
     /// What is measured of a trial
@@ -67,6 +70,7 @@ impl Arguments {
             (Of::Estimators, _) => kinds(registry.estimators(), |name| {
                 registry.estimator(name).is_ok_and(|made| made.it.needs_truth())
             }),
+            (Of::Protocols, _) => kinds(registry.protocols(), |_| false),
             (Of::Roles, _) => roles(&self.scenario()?),
             (Of::Metrics, _) => metrics(&self.scenario()?),
         };

@@ -67,7 +67,7 @@ fn who_decided(account: &Account) -> String {
         return format!("{policy} decided");
     }
     let pairs = joins.iter().enumerate().flat_map(|(i, a)| joins[i + 1..].iter().map(move |b| (a, b)));
-    let same = pairs.filter(|(a, b)| a.sees == b.sees).count();
+    let same = pairs.filter(|(a, b)| a.agrees_with(b)).count();
     let all = joins.len() * (joins.len() - 1) / 2;
     format!("each robot decided by {policy}: {same} of {all} pairs saw the same groups")
 }
@@ -77,15 +77,14 @@ fn join(out: &mut Report, join: &Join, question: &Question) {
     let groups = question
         .task_ids()
         .map(|task| format!("{} {}", question.tasks[task.index()].name, ids(join.sees.of(task))));
-    out.say(format!("  It saw the groups {}", groups.collect::<Vec<_>>().join("; ")));
-    let mut others: Vec<u32> = join.sees.groups.iter().chain([&join.sees.idle]).flatten().copied().collect();
-    others.retain(|robot| *robot != join.robot);
-    others.sort_unstable();
+    let late = if join.is_late { ", when its time was over" } else { "" };
+    let (after_s, groups) = (join.after_s, groups.collect::<Vec<_>>().join("; "));
+    out.say(format!("  After {after_s:.1} s{late}, it saw the groups {groups}"));
     let age = |(robot, age): (&u32, &Option<f64>)| match age {
         Some(seconds) => format!("{robot}: {seconds:.1} s"),
         None => format!("{robot}: never"),
     };
-    let heard: Vec<String> = others.iter().zip(&join.ages_s).map(age).collect();
+    let heard: Vec<String> = join.ages_s.iter().map(age).collect();
     out.say(format!("  It had heard of the others so long ago: {}", heard.join(", ")));
 }
 

@@ -1,0 +1,222 @@
+//! Protocols: how robots that decide for themselves come to their decisions. A robot says things, hears
+//! things, wakes up, and at last joins a group.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::decision::{Assignment, Decision};
+use crate::error::PolicyError;
+use crate::ids::TaskId;
+use crate::question::Question;
+use crate::session::{Asked, Driver, Session};
+
+/// A protocol among robots, as a function of one robot's turn: what it keeps in mind travels with the turn,
+/// so that no robot can know what it was not told.
+///
+/// ```
+/// use teaming::protocol::{Act, Protocol, Turn};
+/// use teaming::PolicyError;
+///
+/// /// Waits a second, then decides as the rule says.
+/// struct Hesitate;
+///
+/// impl Protocol for Hesitate {
+///     fn turn(&self, turn: &Turn) -> Result<Act, PolicyError> {
+///         Ok(match &turn.rule {
+///             Some(groups) => Act::joins(groups.clone()),
+///             None if turn.since_s < 1.0 => Act { wake_in_s: Some(1.0), ..Act::default() },
+///             None => Act { asks: true, ..Act::default() },
+///         })
+///     }
+/// }
+/// ```
+pub trait Protocol: Send + Sync {
+    /// What a robot does in its turn: the first of a negotiation, when it has heard something, and when it
+    /// wakes up.
+    ///
+    /// # Errors
+    /// The protocol cannot go on.
+    fn turn(&self, turn: &Turn) -> Result<Act, PolicyError>;
+}
+
+/// A turn of one robot in a negotiation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Turn {
+    /// The robot.
+    pub robot: u32,
+    /// How long ago the negotiation began, in seconds.
+    pub since_s: f64,
+    /// What it was told since its last turn, in the order in which it heard it.
+    pub told: Vec<Told>,
+    /// What it kept in mind at its last turn; null in its first.
+    pub state: Value,
+    /// The groups as the rule before `by` sees them, if the robot has just asked for them.
+    pub rule: Option<Assignment>,
+    /// The team as the robot knows it now.
+    pub question: Question,
+    /// What is to become of a robot that is out of time; none before.
+    #[serde(skip)]
+    pub late: Option<Undecided>,
+}
+
+impl Turn {
+    /// The same for whoever must not know the seed of the question, see [`Question::sealed`].
+    #[must_use]
+    pub fn sealed(&self) -> Self {
+        Self { question: self.question.sealed(), ..self.clone() }
+    }
+}
+
+/// Something that a robot was told.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Told {
+    /// Who said it.
+    pub from: u32,
+    /// What was said.
+    pub what: Value,
+    /// How long ago it was said, in seconds.
+    pub age_s: f64,
+}
+
+/// What a robot does in its turn.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Act {
+    /// What it says.
+    pub says: Vec<Say>,
+    /// Whether it says to all how the others are, as far as it has heard.
+    pub shares: bool,
+    /// Whether it asks how the rule before `by` groups the team as it knows it. It gets another turn at once,
+    /// with the [answer](Turn::rule).
+    pub asks: bool,
+    /// Where it goes; none as long as it has not decided. What it decides later counts instead.
+    pub joins: Option<Choice>,
+    /// When it wakes up, in seconds from now; 0 for once more in this step, after all have been heard.
+    pub wake_in_s: Option<f64>,
+    /// What it keeps in mind: up to [`MOST_STATE`] bytes of JSON.
+    pub state: Value,
+}
+
+/// Most bytes of JSON that a robot keeps in mind, or says at once.
+pub const MOST_STATE: usize = 16 << 10;
+
+/// Something that a robot says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Say {
+    /// To whom; none for all.
+    #[serde(default)]
+    pub to: Option<u32>,
+    /// What.
+    pub what: Value,
+}
+
+/// Where a robot goes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(
+    untagged,
+    expecting = "joins must be the number of a task, {\"groups\": [..]} or \"stays\""
+)]
+pub enum Choice {
+    /// To its own group of these, as it sees all groups. It may leave out others, but not itself.
+    Groups(Assignment),
+    /// To the group of this task. Of the other groups it says nothing.
+    Group(TaskId),
+    /// Nowhere.
+    Stays(Stays),
+}
+
+/// The choice of a robot that goes nowhere, in JSON `"stays"`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Stays {
+    /// It stays at home.
+    #[serde(rename = "stays")]
+    AtHome,
+}
+
+/// What becomes of a robot that has not decided when the time of a negotiation is over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+pub enum Undecided {
+    /// It goes where the rule sends it, by what it knows. The default.
+    #[default]
+    OwnView,
+    /// It goes where the base sends it.
+    Base,
+    /// It stays at home.
+    Stays,
+}
+
+impl Act {
+    /// Joins its own group of these.
+    #[must_use]
+    pub fn joins(groups: Assignment) -> Self {
+        Self { joins: Some(Choice::Groups(groups)), ..Self::default() }
+    }
+}
+
+impl Choice {
+    /// The groups as a robot sees them that chooses this; `None` if there is no such task.
+    #[must_use]
+    pub fn seen_by(self, robot: u32, tasks: usize) -> Option<Assignment> {
+        let mut seen = Assignment::new(vec![Vec::new(); tasks]);
+        match self {
+            Self::Groups(groups) => return Some(groups.sorted()),
+            Self::Group(task) => seen.groups.get_mut(task.index())?.push(robot),
+            Self::Stays(_) => seen.idle.push(robot),
+        }
+        Some(seen)
+    }
+}
+
+/// Each robot joins the group in which its own decision has it. One that is out of time may have to do as the
+/// base says, whose question `base` is.
+///
+/// # Errors
+/// Those of [`Session::decide`].
+pub fn each_alone(
+    session: &mut (impl Session + ?Sized),
+    turns: &[Turn],
+    base: &Asked<'_>,
+) -> Result<Vec<Act>, PolicyError> {
+    let mut of_base = None;
+    let mut act = |turn: &Turn| {
+        let decision = match turn.late {
+            Some(Undecided::Stays) => return Ok(Act::default()),
+            Some(Undecided::Base) => match &of_base {
+                Some(decision) => Decision::clone(decision),
+                None => of_base.insert(session.decide(base)?).clone(),
+            },
+            Some(Undecided::OwnView) | None => session.decide(&base.about(&turn.question))?,
+        };
+        Ok(Act::joins(decision.assignment))
+    };
+    turns.iter().map(&mut act).collect()
+}
+
+/// A protocol as a driver of turns.
+pub struct Talk<P>(Arc<P>);
+
+impl<P: Protocol + 'static> Talk<P> {
+    /// The driver of a protocol.
+    pub fn shared(protocol: P) -> Arc<dyn Driver> {
+        Arc::new(Self(Arc::new(protocol)))
+    }
+}
+
+impl<P: Protocol + 'static> Driver for Talk<P> {
+    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
+        Ok(Box::new(Self(Arc::clone(&self.0))))
+    }
+}
+
+impl<P: Protocol> Session for Talk<P> {
+    fn decide(&mut self, _: &Asked<'_>) -> Result<Decision, PolicyError> {
+        Err(PolicyError::NoRule)
+    }
+
+    fn act(&mut self, turns: &[Turn], _: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        turns.iter().map(|turn| self.0.turn(turn)).collect()
+    }
+}
