@@ -9,8 +9,8 @@ use std::time::Duration;
 
 use teaming::protocol::each_alone;
 use teaming::{
-    Act, Asked, Basis, Deadline, Decision, Driver, PolicyError, PolicyKind, Question, Registry, RegistryError,
-    Session, TrialStart, Turn,
+    Act, Asked, Basis, Deadline, Decision, Driver, PolicyError, PolicyKind, Question, Registry,
+    RegistryError, Session, TrialStart, Turn,
 };
 
 use crate::consent::Consent;
@@ -231,7 +231,11 @@ struct Handle(Arc<Program>);
 impl Driver for Handle {
     fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
         if self.0.options.isolate {
-            return Ok(Box::new(Isolated { program: Arc::clone(&self.0), robots: BTreeMap::new(), trial: None }));
+            return Ok(Box::new(Isolated {
+                program: Arc::clone(&self.0),
+                robots: BTreeMap::new(),
+                trial: None,
+            }));
         }
         Ok(Box::new(ProgramSession::open(&self.0)?))
     }

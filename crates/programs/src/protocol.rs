@@ -147,7 +147,10 @@ pub(crate) fn acts(line: &[u8], id: u64, turns: usize) -> Result<Vec<Act>, Compl
         return Err(wrong("the field acts is no list".to_owned()));
     };
     if acts.len() != turns {
-        return Err(wrong(format!("acts must have one entry for each of the {turns} turns, found {}", acts.len())));
+        return Err(wrong(format!(
+            "acts must have one entry for each of the {turns} turns, found {}",
+            acts.len()
+        )));
     }
     for act in &mut acts {
         if let Some(Value::Object(groups)) = act.get_mut("joins") {

@@ -64,7 +64,8 @@ impl Registry {
     fn parse_by(&self, protocol: &str, rule: Written<'_>, text: &str) -> Result<MadePolicy, RegistryError> {
         let protocol = self.protocol(protocol)?;
         let is_alone = rule.rule.is_empty() && rule.guide.is_none();
-        let rule = (!is_alone).then(|| self.parse_rule(Written { protocol: None, ..rule }, text)).transpose()?;
+        let rule =
+            (!is_alone).then(|| self.parse_rule(Written { protocol: None, ..rule }, text)).transpose()?;
         if let Some(rule) = rule.as_ref().filter(|rule| rule.it.needs_trial()) {
             let reason = format!("policy {}: it plays the running trial on, which no robot can", rule.name);
             return Err(RegistryError::Arrow { text: text.trim().to_owned(), reason });
@@ -74,8 +75,7 @@ impl Registry {
             format!("{rule} by {of_protocol}").trim().to_owned()
         };
         let label = with(&|rule| rule.label.clone(), protocol.label.clone());
-        let options =
-            with(&|rule| rule.options.clone(), format!("{}{}", protocol.name, protocol.options));
+        let options = with(&|rule| rule.options.clone(), format!("{}{}", protocol.name, protocol.options));
         let name = rule.as_ref().unwrap_or(&protocol).name.clone();
         Ok(Made { name, label, options, it: Arc::new(By { rule, protocol }), sources: None })
     }
@@ -162,7 +162,10 @@ mod tests {
             assert_eq!(parts(text), (text, None));
         }
         let by = Written::of("RNE <- Kalman | Discount by Gossip(exchanges: 2)");
-        assert_eq!((by.rule, by.guide, by.protocol), ("RNE", Some("Kalman | Discount"), Some("Gossip(exchanges: 2)")));
+        assert_eq!(
+            (by.rule, by.guide, by.protocol),
+            ("RNE", Some("Kalman | Discount"), Some("Gossip(exchanges: 2)"))
+        );
         let alone = Written::of("by Sorted");
         assert_eq!((alone.rule, alone.protocol), ("", Some("Sorted")));
         assert_eq!(outside("Kalman(q: 1) | Exclude(below: 0.3)", "|"), Some(13));

@@ -129,7 +129,12 @@ impl BySession {
             let (turn, act) = (&turns[*place], &acts[*place]);
             let rule = self.rule.as_mut().ok_or(PolicyError::NoRule)?;
             let groups = rule.decide(&base.about(&turn.question))?.assignment;
-            again.push(Turn { told: Vec::new(), state: act.state.clone(), rule: Some(groups), ..turn.clone() });
+            again.push(Turn {
+                told: Vec::new(),
+                state: act.state.clone(),
+                rule: Some(groups),
+                ..turn.clone()
+            });
         }
         if again.is_empty() {
             return Ok(());

@@ -115,10 +115,7 @@ pub struct Say {
 
 /// Where a robot goes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "joins must be the number of a task, {\"groups\": [..]} or \"stays\""
-)]
+#[serde(untagged, expecting = "joins must be the number of a task, {\"groups\": [..]} or \"stays\"")]
 pub enum Choice {
     /// To its own group of these, as it sees all groups. It may leave out others, but not itself.
     Groups(Assignment),

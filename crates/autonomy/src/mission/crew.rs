@@ -26,6 +26,19 @@ pub struct Group {
     pub at_work: bool,
 }
 
+/// The place of a robot among its mates that move as it does.
+struct Place {
+    rank: usize,
+    ranks: usize,
+}
+
+impl Place {
+    fn of(robot: &KnownRobot, mates: &[RobotId], team: &[KnownRobot]) -> Self {
+        let alike = || mates.iter().filter(|mate| team[mate.index()].is_aerial() == robot.is_aerial());
+        Self { rank: alike().take_while(|mate| **mate != robot.id).count(), ranks: alike().count() }
+    }
+}
+
 /// What each robot does, and the groups.
 #[derive(Serialize, Deserialize)]
 pub struct Crew {
@@ -218,23 +231,27 @@ impl Crew {
     ) {
         let at_work = members.iter().any(|id| team[id.index()].can_carry());
         let area = &model.tasks[task.index()].area;
-        let (mut ground, mut aerial) = (0, 0);
-        let flying = members.iter().filter(|id| team[id.index()].is_aerial()).count();
         for id in &members {
             let robot = &team[id.index()];
-            let (rank, ranks) =
-                if robot.is_aerial() { (&mut aerial, flying) } else { (&mut ground, members.len() - flying) };
+            let Place { rank, ranks } = Place::of(robot, &members, team);
             let agent = &mut self.agents[id.index()];
             agent.task = Some(task);
             agent.has_rested = false;
             agent.rest_at = task;
-            agent.sweep = area.sweep(robot.observing_range() as f32, *rank, ranks);
-            agent.sweep.reverse();
-            agent.muster = if robot.is_aerial() { area.hover(*rank, ranks) } else { area.muster(*rank) };
+            agent.muster = if robot.is_aerial() { area.hover(rank, ranks) } else { area.muster(rank) };
             agent.activity = if at_work { Activity::Searching } else { Activity::Home };
-            *rank += 1;
+            self.share_sweep(*id, &members, model, team);
         }
         self.groups[task.index()] = Group { members, at_work };
+    }
+
+    /// A robot takes its part of the sweep of its task, which it shares with those whom it holds for its mates.
+    pub(super) fn share_sweep(&mut self, id: RobotId, mates: &[RobotId], model: &Model, team: &[KnownRobot]) {
+        let (robot, agent) = (&team[id.index()], &mut self.agents[id.index()]);
+        let Some(task) = agent.task else { return };
+        let Place { rank, ranks } = Place::of(robot, mates, team);
+        agent.sweep = model.tasks[task.index()].area.sweep(robot.observing_range() as f32, rank, ranks);
+        agent.sweep.reverse();
     }
 
     /// The goal of a robot, by its activity; none while it loads or if it can no longer act.

@@ -156,7 +156,7 @@ impl Mission {
     /// for one, or be what came of a negotiation, which ends.
     pub fn assign(&mut self, assignment: &Assignment, scene: &mut Scene) {
         let Some(Pending { unfit, .. }) = self.pending.take() else { return };
-        let robots_decided = self.talks.take().is_some();
+        let talks = self.talks.take();
         self.crew.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
         let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
@@ -170,9 +170,17 @@ impl Mission {
             holders.for_each(|holder| scene.beliefs.depart(holder));
             self.crew.send_out(task, members, scene.model, &scene.beliefs.team);
         }
+        for join in talks.iter().flat_map(Talks::joins) {
+            let (robot, mates) = (RobotId(join.robot), join.mates());
+            let is_followed = self.crew.group_of(robot) == join.sees.task_of(join.robot);
+            // Who names nobody else looks who goes along.
+            if is_followed && mates.len() > 1 {
+                self.crew.share_sweep(robot, &mates, scene.model, &scene.beliefs.team);
+            }
+        }
         unfit.iter().for_each(|(id, cause)| self.crew.send_to_rest(*id, *cause, scene));
         if let Decider::Robots { retry_s, .. } = scene.model.mission.decides
-            && robots_decided
+            && talks.is_some()
             && !self.crew.groups.iter().any(|group| group.at_work)
         {
             self.waits_until = scene.step + scene.model.steps_in(retry_s);

@@ -54,6 +54,12 @@ pub struct Join {
 }
 
 impl Join {
+    /// Those whom the robot holds for its group, itself among them.
+    pub(super) fn mates(&self) -> Vec<RobotId> {
+        let own = self.sees.task_of(self.robot).map(|task| self.sees.of(task)).unwrap_or_default();
+        own.iter().map(|robot| RobotId(*robot)).collect()
+    }
+
     /// Whether two robots saw each robot that both saw in the same place.
     #[must_use]
     pub fn agrees_with(&self, other: &Self) -> bool {
@@ -89,6 +95,11 @@ impl Talks {
         };
         let seats = who.fit.iter().map(seat).collect();
         Self { who, since_step: step, seats }
+    }
+
+    /// How robots have decided so far.
+    pub(super) fn joins(&self) -> impl Iterator<Item = &Join> {
+        self.seats.iter().filter_map(|seat| seat.joined.as_ref())
     }
 
     fn due(&self) -> impl Iterator<Item = &Seat> {
@@ -153,11 +164,8 @@ impl Mission {
         let (Some(talks), Some(pending)) = (&self.talks, &self.pending) else { return Vec::new() };
         let dt_s = scene.model.dt_s();
         let now_s = scene.step as f64 * dt_s;
-        let told = |mail: &Mail| Told {
-            from: mail.from.0,
-            what: value(&mail.what),
-            age_s: now_s - mail.sent_s,
-        };
+        let told =
+            |mail: &Mail| Told { from: mail.from.0, what: value(&mail.what), age_s: now_s - mail.sent_s };
         let late = late_by(scene.model, scene.step, talks.since_step);
         let turn = |(seat, question): (&Seat, &Question)| Turn {
             robot: seat.robot.0,
@@ -196,7 +204,10 @@ impl Mission {
             seat.wakes_at = act.wake_in_s.map(|seconds| scene.step + scene.model.steps_in(seconds));
             said.extend(act.says.into_iter().map(|say| (robot, say)));
             sharing.extend(act.shares.then_some(robot));
-            let stays = || Assignment { idle: vec![robot.0], ..Assignment::new(vec![Vec::new(); self.crew.groups.len()]) };
+            let stays = || Assignment {
+                idle: vec![robot.0],
+                ..Assignment::new(vec![Vec::new(); self.crew.groups.len()])
+            };
             let sees = sees.or_else(|| (is_late && seat.joined.is_none()).then(stays));
             if let Some(sees) = sees {
                 seat.joined = Some(Join { robot: robot.0, sees, ages_s, after_s, is_late });

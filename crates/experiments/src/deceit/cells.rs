@@ -43,7 +43,9 @@ pub(super) struct Lie {
 pub(super) fn deaf_guide(policy: &PolicySpec) -> Option<String> {
     let written = policy.plain();
     match Written::of(&written) {
-        Written { rule: DEAF, guide, protocol: None } if !policy.made().it.leaves_idle() => guide.map(str::to_owned),
+        Written { rule: DEAF, guide, protocol: None } if !policy.made().it.leaves_idle() => {
+            guide.map(str::to_owned)
+        }
         _ => None,
     }
 }

@@ -44,9 +44,8 @@ pub(super) fn never_heard(record: &TrialRecord) -> Option<f64> {
 
 /// Mean time in which robots agreed on all groups, in seconds, over the decisions in which they did.
 pub(super) fn seconds_to_agree(record: &TrialRecord) -> Option<f64> {
-    let agreed = |made: &&DecisionRecord| {
-        !made.joins.is_empty() && pairs(made).all(|(a, b)| a.agrees_with(b))
-    };
+    let agreed =
+        |made: &&DecisionRecord| !made.joins.is_empty() && pairs(made).all(|(a, b)| a.agrees_with(b));
     let last = |made: &DecisionRecord| made.joins.iter().map(|join| join.after_s).reduce(f64::max);
     mean(record.decisions.iter().filter(agreed).filter_map(last))
 }

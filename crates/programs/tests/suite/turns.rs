@@ -101,7 +101,10 @@ fn a_robot_gets_the_groups_of_the_rule_that_it_asks() {
 fn acts_that_cannot_be_read_are_told() {
     let turns = turns(&small());
     for (body, expected) in [
-        ("    return {'joins': 'home'}", "acts[0]: joins must be the number of a task, {\"groups\": [..]} or \"stays\""),
+        (
+            "    return {'joins': 'home'}",
+            "acts[0]: joins must be the number of a task, {\"groups\": [..]} or \"stays\"",
+        ),
         ("    return {'say': 1}", "acts[0]: unknown field `say`, expected one of `says`"),
         ("    return 1 / 0", "it exited with status 1"),
     ] {

@@ -58,7 +58,8 @@ impl Simulation {
         }
         let tasks = self.model().tasks.len();
         let seen = |choice: Choice| choice.seen_by(turn.robot, tasks);
-        let sees = act.joins.take().map(|choice| seen(choice).ok_or(refused("joins", "be the number of a task")));
+        let sees =
+            act.joins.take().map(|choice| seen(choice).ok_or(refused("joins", "be the number of a task")));
         let sees = sees.transpose()?;
         if let Some(sees) = &sees {
             check(sees, &turn.question, turn.robot)?;
