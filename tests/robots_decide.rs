@@ -2,7 +2,7 @@
 
 use experiments::experiment::with_settings;
 use rayon::prelude::*;
-use scenario::{AtHome, Coin, Decider, Loss, MediumRules, Scenario};
+use scenario::{AtHome, BeliefSharing, ClaimRule, Coin, Decider, Loss, MediumRules, Scenario};
 use serde_json::json;
 use teaming::protocol::{Act, Choice, Say, Stays, Turn, Undecided};
 use teaming::{Asked, Assignment, Decision, PolicyError, Session, TaskId};
@@ -15,14 +15,14 @@ use xtask::journeys::{Journeys, STANDSTILL_S};
 use crate::support::{policy, root};
 
 /// A scenario of the repository with these settings.
-fn world(name: &str, settings: &[&str]) -> Scenario {
+pub fn world(name: &str, settings: &[&str]) -> Scenario {
     let (scenario, _) = Scenario::load(&root().join("scenarios").join(name)).unwrap();
     let settings: Vec<String> = settings.iter().map(|setting| (*setting).to_owned()).collect();
     with_settings(&scenario, &settings).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// A checked trial, with all its events.
-fn run(scenario: &Scenario, name: &str, seed: u64) -> (TrialRecord, Vec<Event>) {
+pub fn run(scenario: &Scenario, name: &str, seed: u64) -> (TrialRecord, Vec<Event>) {
     let mut all = Vec::new();
     let trial = Simulation::new(scenario, seed).unwrap().checked();
     let record = trial.run(&mut *policy(name), |_, events, _| all.extend(events.to_vec()));
@@ -182,6 +182,10 @@ fn in_random_worlds_robots_decide_soundly() {
             at_home: [AtHome::Medium, AtHome::Perfect][pick(2) as usize],
             ..MediumRules::default()
         });
+        if file.medium.is_some() && pick(17) < 9 {
+            file.mission.belief_sharing = BeliefSharing::ByRadio;
+            file.mission.claims = ClaimRule::ByRadio { again_s: 5.0 };
+        }
         let scenario = Scenario::try_from(file).unwrap_or_else(|wrong| panic!("world {seed}: {wrong:?}"));
         let policy = format!("{}{by}", ["HP_DIS", "RANDOM", "RNE"][pick(3) as usize]);
         let journeys = Journeys::run(&scenario, &policy, seed);

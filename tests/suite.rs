@@ -4,6 +4,7 @@ mod laws;
 mod support;
 
 mod broken;
+mod claims_by_radio;
 mod conservation;
 mod damaged;
 mod determinism;

@@ -327,7 +327,9 @@ impl Event {
             | Statement::RoundWas(_)
             | Statement::StaysOut { .. }
             | Statement::HasHeard(_)
-            | Statement::Protocol { .. } => None,
+            | Statement::Protocol { .. }
+            | Statement::Claims(_)
+            | Statement::GivesUp { .. } => None,
         }
     }
 }

@@ -125,6 +125,13 @@ pub enum Statement {
         /// Whether it is in nobody's way, because it flies.
         is_aerial: bool,
     },
+    /// The sender claims a rescuee, or none.
+    Claims(Option<Claim>),
+    /// The sender gives up on a rescuee, which it cannot reach or load.
+    GivesUp {
+        /// The rescuee.
+        rescuee: RescueeId,
+    },
     /// A robot has these levels and needs.
     LevelsAre(Levels),
     /// A robot goes so fast.
@@ -147,6 +154,17 @@ pub enum Statement {
     },
 }
 
+/// A claim on a rescuee.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Claim {
+    /// The rescuee.
+    pub rescuee: RescueeId,
+    /// The square of the robot's distance from it, in square metres.
+    pub squared_m: f32,
+    /// The step since which the robot claims it.
+    pub since_step: u64,
+}
+
 /// What a robot has heard of all before a round.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Digest {
@@ -167,7 +185,9 @@ impl Statement {
             | Self::RescueeWaits { .. }
             | Self::RescueeIsGone { .. }
             | Self::TaskIs { .. }
-            | Self::WreckLies { .. } => true,
+            | Self::WreckLies { .. }
+            | Self::Claims(_)
+            | Self::GivesUp { .. } => true,
             Self::LevelsAre(_)
             | Self::MateGoes(_)
             | Self::RoundWas(_)

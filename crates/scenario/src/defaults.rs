@@ -6,9 +6,9 @@ use rne_core::hierarchy::NeedLevel;
 use teaming::GroupSizes;
 
 use super::file::{
-    BeliefSharing, CostUnit, Costs, Decider, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest, Measure,
-    MissionEnd, MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills, RightOfWay,
-    RoleFile, RoleKind, RoundEnd, TurnBack,
+    BeliefSharing, ClaimRule, CostUnit, Costs, Decider, EmptyBattery, EmptyTasks, InitialLevels, LoadAtRest,
+    Measure, MissionEnd, MissionRules, Movable, NeedFile, Normal, PlanningRules, RestAtHome, RestFills,
+    RightOfWay, RoleFile, RoleKind, RoundEnd, TurnBack,
 };
 use crate::{Rates, Sight, WorkRates};
 
@@ -97,6 +97,11 @@ pub(crate) fn deadline_s() -> f64 {
     30.0
 }
 
+/// Time after which a robot tells its claim again, in seconds.
+pub(crate) fn claim_again_s() -> f64 {
+    5.0
+}
+
 impl Default for MissionRules {
     fn default() -> Self {
         Self {
@@ -117,6 +122,7 @@ impl Default for MissionRules {
             may_idle: false,
             empty_tasks: EmptyTasks::GetNobody,
             belief_sharing: BeliefSharing::WithGroup,
+            claims: ClaimRule::Known,
             resting_guides: true,
             loading_s: 2.0,
             reach_m: 1.0,

@@ -214,6 +214,8 @@ ron_tree::limits! {
     REST_RESERVE: "mission.rest_reserve" = 0, 10;
     /// Time between two attempts to form groups, in seconds.
     RETRY_S: "mission.decides.Robots.retry_s" = 1, 3_600;
+    /// Time between two tellings of a claim, in seconds.
+    CLAIM_AGAIN_S: "mission.claims.ByRadio.again_s" = 0.1, 3_600;
     /// Longest time of a negotiation, in seconds.
     DEADLINE_S: "mission.decides.Robots.deadline_s" = 0, 3_600;
     /// Time at rest, in seconds.

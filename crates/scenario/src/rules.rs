@@ -153,6 +153,29 @@ pub enum BeliefSharing {
     ByRadio,
 }
 
+/// Who knows which robot claims which rescuee.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum ClaimRule {
+    /// Its whole group, at once. The default.
+    #[default]
+    Known,
+    /// Those whom its radio reaches: each robot goes by the claims that it heard of. Of two on their way to
+    /// one rescuee the nearer keeps its claim, then the one with the lower number.
+    ByRadio {
+        /// Time after which a robot tells its claim again, in seconds. One that was not heard for three times
+        /// as long counts no longer.
+        #[serde(default = "crate::defaults::claim_again_s")]
+        again_s: f64,
+    },
+}
+
+impl ClaimRule {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a field by reference")]
+    fn is_known(&self) -> bool {
+        *self == Self::Known
+    }
+}
+
 /// Who decides which robot goes to which task.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Decider {
@@ -236,6 +259,9 @@ pub struct MissionRules {
     pub empty_tasks: EmptyTasks,
     /// Who shares what a robot in the field has seen. When a round ends, all hear everything.
     pub belief_sharing: BeliefSharing,
+    /// Who knows which robot claims which rescuee.
+    #[serde(skip_serializing_if = "ClaimRule::is_known")]
+    pub claims: ClaimRule,
     /// Whether a robot that rests, or is on its way to rest, still guides its group.
     pub resting_guides: bool,
     /// Time to load one rescuee, in seconds.

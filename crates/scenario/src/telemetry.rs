@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::checker::{Checker, meant, shown};
 use super::file::{Point, ScenarioFile};
-use super::rules::BeliefSharing;
+use super::rules::{BeliefSharing, ClaimRule};
 
 /// How robots report their levels, and who goes by the reports. Without this section, without a medium and
 /// without deceit, everybody knows how every robot is.
@@ -241,6 +241,11 @@ pub(super) fn telemetry(check: &mut Checker, file: &ScenarioFile) {
         medium(check, rules);
     } else if file.mission.belief_sharing == BeliefSharing::ByRadio {
         check.fail("mission.belief_sharing", "must not be ByRadio without a medium", "ByRadio");
+    }
+    let shared = file.mission.belief_sharing;
+    if file.mission.claims != ClaimRule::Known && shared != BeliefSharing::ByRadio {
+        let rule = "must be ByRadio where claims are told by radio";
+        check.fail("mission.belief_sharing", rule, format!("{shared:?}"));
     }
 }
 

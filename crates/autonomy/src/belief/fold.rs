@@ -161,8 +161,11 @@ impl Belief {
                 let known = KnownWreck { at: *at, radius: *radius, is_aerial: *is_aerial, at_step };
                 self.hear_of_wreck(robot.0, known)
             }
-            // The base keeps an account of its own of what robots say of themselves and of their mates.
-            Statement::LevelsAre(_)
+            // The base keeps an account of its own of what robots say of themselves and of their mates, and a
+            // robot of its mates' claims.
+            Statement::Claims(_)
+            | Statement::GivesUp { .. }
+            | Statement::LevelsAre(_)
             | Statement::MateGoes(_)
             | Statement::RoundWas(_)
             | Statement::StaysOut { .. }

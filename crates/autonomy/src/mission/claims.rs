@@ -2,17 +2,20 @@
 //! settled first, whatever the robots' ids.
 
 use parry2d::math::Vector;
+use scenario::ClaimRule;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use teaming::TaskId;
 
+use super::told::HeardClaims;
 use super::{Crew, Scene};
 use crate::belief::Holder;
 use crate::ids::{RescueeId, RobotId};
+use crate::model::Model;
 
 /// New claims: which robot claims which rescuee. The list lives on the stack in teams and tasks of usual
 /// size, like all that claims need.
-type NewClaims = SmallVec<[(RobotId, RescueeId); 16]>;
+pub(super) type NewClaims = SmallVec<[(RobotId, RescueeId); 16]>;
 
 /// The claims that hold: for each rescuee, the robot that is on its way to it or is loading it.
 #[derive(Serialize, Deserialize)]
@@ -21,11 +24,43 @@ pub struct Claims {
     changes: u64,
     /// For each rescuee, whether its group gave up on it in this round.
     pub(super) given_up: Vec<bool>,
+    /// What each robot knows of claims, where they are told by radio; nothing otherwise.
+    pub(super) heard: Vec<HeardClaims>,
 }
 
 impl Claims {
-    pub(super) fn nothing(rescuees: usize) -> Self {
-        Self { by: vec![None; rescuees], changes: 0, given_up: vec![false; rescuees] }
+    pub(super) fn nothing(model: &Model) -> Self {
+        let rescuees = model.rescuee_numbers();
+        let told = if model.mission.claims == ClaimRule::Known { 0 } else { model.robots.len() };
+        let heard = vec![HeardClaims::default(); told];
+        Self { by: vec![None; rescuees], changes: 0, given_up: vec![false; rescuees], heard }
+    }
+
+    /// What robots know of claims, where they are told by radio: a part of the hash chain.
+    pub fn heard(&self) -> Option<impl Serialize + '_> {
+        (!self.heard.is_empty()).then_some(&self.heard)
+    }
+
+    /// A robot gives up on a rescuee, and so does its group once it knows.
+    pub(super) fn give_up(&mut self, rescuee: RescueeId, robot: RobotId) {
+        self.given_up[rescuee.index()] = true;
+        if let Some(heard) = self.heard.get_mut(robot.index()) {
+            heard.give_up(rescuee);
+        }
+    }
+
+    /// A round begins: nothing is given up, and nobody knows of a claim.
+    pub(super) fn begin_round(&mut self) {
+        self.given_up.fill(false);
+        self.heard.fill(HeardClaims::default());
+    }
+
+    /// Whether a rescuee is free, as far as a robot knows.
+    fn is_free(&self, rescuee: RescueeId, robot: RobotId, step: u64) -> bool {
+        match self.heard.get(robot.index()) {
+            Some(heard) => heard.is_free(rescuee, step),
+            None => self.by[rescuee.index()].is_none() && !self.given_up[rescuee.index()],
+        }
     }
 
     /// The claims without what is given up: a part of the hash chain.
@@ -50,6 +85,13 @@ impl Claims {
         self.changes
     }
 
+    /// A robot claims a rescuee no longer. Another that claims it too keeps its claim.
+    pub(super) fn free(&mut self, rescuee: RescueeId, robot: RobotId) {
+        if self.by(rescuee).is_none_or(|by| by == robot) || self.heard.is_empty() {
+            self.set(rescuee, None);
+        }
+    }
+
     pub(super) fn set(&mut self, rescuee: RescueeId, robot: Option<RobotId>) {
         self.by[rescuee.index()] = robot;
         self.changes += 1;
@@ -63,8 +105,15 @@ pub(super) struct Offer {
     at: Vector,
 }
 
+impl Offer {
+    /// The square of its distance from a place, and the rescuee.
+    pub(super) fn from(&self, place: Vector) -> (f32, RescueeId) {
+        ((self.at - place).length_squared(), self.rescuee)
+    }
+}
+
 /// A robot that looks for work, and the nearest rescuee still on offer.
-struct Seeker {
+pub(super) struct Seeker {
     robot: RobotId,
     at: Vector,
     holder: Holder,
@@ -72,16 +121,21 @@ struct Seeker {
 }
 
 impl Seeker {
-    fn new(robot: RobotId, at: Vector, holder: Holder, offers: &[Offer]) -> Self {
+    pub(super) fn new(robot: RobotId, at: Vector, holder: Holder, offers: &[Offer]) -> Self {
         let mut seeker = Self { robot, at, holder, nearest: None };
         seeker.look(offers);
         seeker
     }
 
+    /// The nearest rescuee on offer, with the square of its distance.
+    pub(super) fn nearest(&self) -> Option<(f32, RescueeId)> {
+        self.nearest
+    }
+
     /// Finds the nearest of the rescuees on offer; among equally near rescuees, the one with the lowest id.
     fn look(&mut self, offers: &[Offer]) {
         let own = offers.iter().filter(|offer| offer.holder == self.holder);
-        let offers = own.map(|offer| ((offer.at - self.at).length_squared(), offer.rescuee));
+        let offers = own.map(|offer| offer.from(self.at));
         self.nearest = offers.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     }
 }
@@ -110,10 +164,13 @@ impl Claims {
         }
         let holder = |id: RobotId| Holder::of(scene.model.mission.belief_sharing, id, task);
         let seeking: SmallVec<[RobotId; 16]> = seeking.collect();
-        let mut holders: SmallVec<[Holder; 16]> = seeking.iter().copied().map(holder).collect();
-        holders.dedup();
+        let mut holders: SmallVec<[(Holder, RobotId); 16]> =
+            seeking.iter().map(|id| (holder(*id), *id)).collect();
+        holders.dedup_by_key(|(holder, _)| *holder);
         let mut offers: SmallVec<[Offer; 256]> = SmallVec::new();
-        holders.into_iter().for_each(|holder| offers.extend(self.on_offer(task, holder, scene)));
+        for (holder, robot) in holders {
+            offers.extend(self.on_offer(task, holder, robot, scene));
+        }
         if offers.is_empty() {
             return;
         }
@@ -133,17 +190,17 @@ impl Claims {
     }
 
     /// Rescuees of a task that are believed to wait, with their places: those that no robot has claimed and
-    /// that are not given up as unreachable.
+    /// that are not given up as unreachable, as far as a robot knows.
     pub(super) fn on_offer<'s>(
         &'s self,
         task: TaskId,
         holder: Holder,
+        robot: RobotId,
         scene: &'s Scene,
     ) -> impl Iterator<Item = Offer> + use<'s> {
         let belief = scene.beliefs.of(Some(holder));
         let names = scene.model.names_of(task).map(|names| belief.waiting_among(&names));
-        let is_free = |id: &RescueeId| self.by[id.index()].is_none() && !self.given_up[id.index()];
         let offer = move |(rescuee, at): &(RescueeId, Vector)| Offer { holder, rescuee: *rescuee, at: *at };
-        names.into_iter().flatten().filter(move |(id, _)| is_free(id)).map(offer)
+        names.into_iter().flatten().filter(move |(id, _)| self.is_free(*id, robot, scene.step)).map(offer)
     }
 }

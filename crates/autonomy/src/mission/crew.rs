@@ -140,6 +140,11 @@ impl Crew {
         self.in_field(task, team).map(|id| resources(id) - claims(id)).sum()
     }
 
+    /// Resources that the members of a group in the field have.
+    pub(super) fn resources_in_field(&self, task: TaskId, team: &[KnownRobot]) -> u32 {
+        self.in_field(task, team).map(|id| team[id.index()].resources).sum()
+    }
+
     /// The member in the task area with the most resources left (the lowest id among equals).
     pub(super) fn sharing_member(&self, task: TaskId, scene: &Scene) -> Option<RobotId> {
         let (area, team) = (&scene.model.tasks[task.index()].area, &scene.beliefs.team);

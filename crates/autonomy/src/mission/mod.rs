@@ -12,8 +12,10 @@ mod round;
 mod scene;
 mod settle;
 mod talks;
+mod told;
 mod work;
 
+use scenario::ClaimRule;
 use serde::{Deserialize, Serialize};
 use teaming::{Question, TaskId};
 
@@ -92,7 +94,7 @@ pub enum Ending {
 impl Mission {
     /// A mission in which all robots are at home, or on their errands.
     pub fn new(model: &Model) -> Self {
-        let (crew, claims) = (Crew::new(model), Claims::nothing(model.rescuee_numbers()));
+        let (crew, claims) = (Crew::new(model), Claims::nothing(model));
         Self { crew, claims, round: 0, ending: None, pending: None, talks: None, waits_until: 0 }
     }
 
@@ -108,10 +110,12 @@ impl Mission {
         (agents, groups, &claims.given_up, round, ending, pending)
     }
 
-    /// How far the robots are in their talks before a round, and until when they wait: a part of the hash
-    /// chain; `None` where they neither talk nor have waited.
+    /// How far the robots are in their talks before a round, until when they wait, and what they know of
+    /// claims by radio: a part of the hash chain; `None` where they neither talk, nor have waited, nor know.
     pub fn talks(&self) -> Option<impl Serialize + '_> {
-        (self.talks.is_some() || self.waits_until > 0).then_some((&self.talks, self.waits_until))
+        let heard = self.claims.heard();
+        let is_any = self.talks.is_some() || self.waits_until > 0 || heard.is_some();
+        is_any.then_some((&self.talks, self.waits_until, heard))
     }
 
     /// Begins the decisions of a step: notes which robots are cut off, and ends and begins rounds. A new
@@ -177,11 +181,16 @@ impl Mission {
             for task in scene.model.task_ids() {
                 self.call_back(task, scene);
             }
-            let mut claims = self.claims.new_claims(&self.crew, scene).into_iter().peekable();
+            let claims = match scene.model.mission.claims {
+                ClaimRule::Known => self.claims.new_claims(&self.crew, scene),
+                ClaimRule::ByRadio { .. } => self.claim_by_radio(scene),
+            };
+            let mut claims = claims.into_iter().peekable();
             for robot in (0..scene.beliefs.team.len() as u32).map(RobotId) {
                 let claim = claims.next_if(|(by, _)| *by == robot).map(|(_, rescuee)| rescuee);
                 self.choose_activity(robot, claim, scene);
             }
+            self.tell_claims(scene);
         }
         for robot in &scene.beliefs.team {
             let goal = self.crew.goal_of(robot, scene.model, scene.beliefs);
@@ -226,7 +235,7 @@ impl Mission {
     /// Gives up the claim of a robot, if it has one.
     fn release_claim(&mut self, id: RobotId) {
         if let Some(rescuee) = self.crew.agents[id.index()].activity.claim() {
-            self.claims.set(rescuee, None);
+            self.claims.free(rescuee, id);
         }
     }
 
@@ -245,7 +254,7 @@ impl Mission {
             let knows = |id: RobotId| {
                 let holder = Holder::of(sharing, id, task);
                 let has_room = scene.beliefs.team[id.index()].free_capacity() > 0;
-                has_room && self.claims.on_offer(task, holder, scene).next().is_some()
+                has_room && self.claims.on_offer(task, holder, id, scene).next().is_some()
             };
             field.known_rescuees = u32::from(self.crew.in_field(task, &scene.beliefs.team).any(knows));
         }

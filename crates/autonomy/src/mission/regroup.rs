@@ -53,7 +53,7 @@ impl Mission {
     /// restocks; it knows what it hands out.
     pub(super) fn open_round(&mut self, scene: &mut Scene) -> Vec<RobotId> {
         self.round += 1;
-        self.claims.given_up.fill(false);
+        self.claims.begin_round();
         let mut restocked = Vec::new();
         for id in self.at_home(&scene.beliefs.team) {
             let robot = &mut scene.beliefs.team[id.index()];

@@ -50,6 +50,11 @@ impl Scene<'_> {
         Some(Sought { rescuee, at: known.waits_at?, sd_m: known.sd_m })
     }
 
+    /// Whether a robot in the group of a task has heard that a rescuee waits no longer.
+    pub(super) fn is_known_gone(&self, robot: RobotId, task: TaskId, rescuee: RescueeId) -> bool {
+        self.known_of(robot, task, rescuee).is_some_and(|known| known.waits_at.is_none())
+    }
+
     fn known_of(&self, robot: RobotId, task: TaskId, rescuee: RescueeId) -> Option<&KnownRescuee> {
         let holder = Holder::of(self.model.mission.belief_sharing, robot, task);
         self.beliefs.of(Some(holder)).rescuees.get(rescuee.index())

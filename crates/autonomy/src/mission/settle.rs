@@ -68,15 +68,17 @@ impl Mission {
             }
             Outcome::NoResource(rescuee) => self.crew.agent(robot).activity = Activity::Approaching(rescuee),
             Outcome::NoRoom(rescuee) => {
-                self.claims.set(rescuee, None);
+                self.claims.free(rescuee, robot);
                 self.crew.agent(robot).activity = Activity::Searching;
             }
             Outcome::NotThere(rescuee) => {
-                self.claims.given_up[rescuee.index()] |= scene.model.has_misplaced;
+                if scene.model.has_misplaced {
+                    self.claims.give_up(rescuee, robot);
+                }
                 self.go_on_without(rescuee, robot, scene);
             }
             Outcome::Taken(rescuee) => {
-                self.claims.given_up[rescuee.index()] = true;
+                self.claims.give_up(rescuee, robot);
                 self.release_claim(robot);
                 self.crew.agent(robot).activity = Activity::Searching;
             }
@@ -106,7 +108,7 @@ impl Mission {
 
     /// A rescuee no longer waits: its robot says so, and goes on searching.
     fn go_on_without(&mut self, rescuee: RescueeId, robot: RobotId, scene: &mut Scene) {
-        self.claims.set(rescuee, None);
+        self.claims.free(rescuee, robot);
         let says = Statement::RescueeIsGone { rescuee };
         scene.sent.push(Report { from: Speaker::Robot(robot), says, at_step: scene.step, sd_m: 0.0 });
         self.crew.agent(robot).activity = Activity::Searching;

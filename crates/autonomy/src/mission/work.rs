@@ -51,7 +51,7 @@ impl Mission {
 
     /// Gives up on a rescuee that cannot be reached, or to which the robot comes no nearer.
     fn give_up(&mut self, id: RobotId, task: TaskId, rescuee: RescueeId, scene: &mut Scene) {
-        self.claims.given_up[rescuee.index()] = true;
+        self.claims.give_up(rescuee, id);
         if let Some(at) = scene.place_of(id, task, rescuee) {
             let (robot, place, cause) = (id, at.into(), CutOffCause::NoProgress);
             let knows_no_way = is_out_of_reach(id, at, scene);

@@ -45,12 +45,7 @@ impl State {
 
     /// Group-mates hear what has arrived by now.
     pub(super) fn hear_mates(&mut self, model: &Model) {
-        let Self { mission, beliefs, telemetry: Some(telemetry), log, step, .. } = self else { return };
-        for message in telemetry.heard_by_mates(*step as f64 * model.dt_s(), log) {
-            let holder = message.to.and_then(|to| mission.crew.holder_of(to, model));
-            if let Some(holder) = holder {
-                beliefs.hear_in_field(holder, &message.report);
-            }
-        }
+        let (mission, mut scene) = self.scene(model);
+        mission.hear_mates(&mut scene);
     }
 }
