@@ -9,10 +9,12 @@ use experiments::experiment::{PolicySpec, with_oracle};
 use programs::{Consent, Launch, Unknown};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
+use pythonize::{depythonize, pythonize};
 use scenario::seed::trial_number;
+use teaming::protocol::each_alone;
 use teaming::{
-    Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Question, Registry, Session,
-    TrialStart,
+    Act, Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Question, Registry, Session,
+    TrialStart, Turn,
 };
 
 use crate::answer::{asked, groups};
@@ -30,6 +32,8 @@ pub enum Given {
         name: String,
         /// Called with a question, returns groups.
         decide: Py<PyAny>,
+        /// Called with the turns of robots that decide, returns what they do.
+        act: Option<Py<PyAny>>,
         /// A text that changes with its answers.
         fingerprint: String,
         /// Whether the same question always gets the same answer.
@@ -126,10 +130,11 @@ impl Policies {
         for policy in given {
             match policy {
                 Given::Written(text) => written.push(text),
-                Given::Own { name, decide, fingerprint, deterministic } => {
+                Given::Own { name, decide, act, fingerprint, deterministic } => {
                     let own = Own {
                         name: name.clone(),
                         decide: Arc::new(decide),
+                        act: act.map(Arc::new),
                         fingerprint,
                         is_deterministic: deterministic,
                         raised: raised.clone(),
@@ -157,6 +162,7 @@ impl Policies {
 struct Own {
     name: String,
     decide: Arc<Py<PyAny>>,
+    act: Option<Arc<Py<PyAny>>>,
     fingerprint: String,
     is_deterministic: bool,
     raised: Raised,
@@ -173,6 +179,22 @@ impl Own {
             let assignment = groups(&answer)?;
             let checked = assignment.check(&question);
             checked.map_err(|error| PyValueError::new_err(error.to_string())).map(|()| assignment)
+        })
+    }
+}
+
+impl Own {
+    /// What robots do in their turns, by this function; `None` once the call is ending.
+    fn ask_acts(&self, act: &Arc<Py<PyAny>>, turns: &[Turn]) -> Option<PyResult<Vec<Act>>> {
+        let (act, count) = (Arc::clone(act), turns.len());
+        let turns: Vec<Turn> = turns.iter().map(Turn::sealed).collect();
+        self.caller.ask(move |py| {
+            let acts: Vec<Act> = depythonize(&act.bind(py).call1((pythonize(py, &turns)?,))?)?;
+            if acts.len() != count {
+                let rule = format!("act must return one entry for each of the {count} turns");
+                return Err(PyValueError::new_err(format!("{rule}, found {}", acts.len())));
+            }
+            Ok(acts)
         })
     }
 }
@@ -205,15 +227,29 @@ impl Session for OwnSession {
     }
 
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError> {
-        let Own { name, raised, stop, .. } = &*self.policy;
         let answer = self.policy.ask(asked.question).ok_or(PolicyError::Late)?;
-        answer.map(Decision::of).map_err(|error| {
-            let told = PolicyError::Other(error.to_string());
-            let (policy, round) = (name.clone(), asked.question.round);
-            let raise = Raise { error, policy, trial: self.trial, round };
-            raised.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(raise);
-            stop.store(true, Ordering::Relaxed);
-            told
-        })
+        answer.map(Decision::of).map_err(|error| self.raise(error, asked.question.round))
+    }
+
+    fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        match &self.policy.act {
+            Some(act) if turns.iter().all(|turn| turn.late.is_none()) => {
+                let answer = self.policy.ask_acts(act, turns).ok_or(PolicyError::Late)?;
+                answer.map_err(|error| self.raise(error, base.question.round))
+            }
+            _ => each_alone(self, turns, base),
+        }
+    }
+}
+
+impl OwnSession {
+    /// Notes an exception, which ends the work.
+    fn raise(&self, error: PyErr, round: u32) -> PolicyError {
+        let Own { name, raised, stop, .. } = &*self.policy;
+        let told = PolicyError::Other(error.to_string());
+        let raise = Raise { error, policy: name.clone(), trial: self.trial, round };
+        raised.0.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(raise);
+        stop.store(true, Ordering::Relaxed);
+        told
     }
 }

@@ -80,6 +80,40 @@ class Stubborn:
         return {"groups": eng(question), "idle": None}
 
 
+class Waits:
+    """Robots tell all others their number, and decide once they have heard everybody."""
+
+    name = "waits"
+
+    def decide(self, question: Any) -> Any:
+        return eng(question)
+
+    def act(self, turns: list[Any]) -> list[Any]:
+        return [self.turn(turn) for turn in turns]
+
+    def turn(self, turn: Any) -> Any:
+        if turn["state"] is None:
+            return {"says": [{"what": turn["robot"]}], "state": []}
+        heard = sorted(turn["state"] + [told["what"] for told in turn["told"]])
+        others = [member["id"] for member in turn["question"]["members"] if member["id"] != turn["robot"]]
+        if heard == others:
+            return {"joins": {"groups": eng(turn["question"])}}
+        return {"state": heard}
+
+
+def test_robots_that_decide_may_talk_in_python(short: usar.Scenario) -> None:
+    robots = short.set(**{"mission.decides": "Robots()"})
+    talked, alone = usar.run(robots, Waits()), usar.run(robots, "ENG")
+    assert talked.state_hash != alone.state_hash, "they went a step later"
+
+    class Few(Waits):
+        def act(self, turns: list[Any]) -> list[Any]:
+            return super().act(turns)[1:]
+
+    with pytest.raises(usar.PolicyError, match="one entry for each of the 12 turns, found 11"):
+        usar.run(robots, Few())
+
+
 def test_policies_are_names_functions_and_objects(short: usar.Scenario) -> None:
     hashes = {usar.run(short, policy, 3).state_hash for policy in ("ENG", eng, Stubborn())}
     assert len(hashes) == 1

@@ -19,6 +19,7 @@ class Own:
 
     name: str
     decide: Callable[[Any], Any]
+    act: Optional[Callable[[Any], Any]]
     fingerprint: str
     deterministic: bool
 
@@ -40,7 +41,7 @@ def given(policy: Policy, name: Optional[str] = None, is_kept: bool = False) -> 
             'give it one with policies={"name": policy}, or an attribute `name`'
         )
     deterministic = bool(getattr(policy, "deterministic", True))
-    return Own(str(own), decide, _fingerprint(policy) if is_kept else "", deterministic)
+    return Own(str(own), decide, getattr(policy, "act", None), _fingerprint(policy) if is_kept else "", deterministic)
 
 
 def _fingerprint(policy: Any) -> str:

@@ -93,7 +93,10 @@ Groups = Union[Iterable[Optional[Iterable[int]]], Answer]
 
 
 class Decides(Protocol):
-    """A policy with a method `decide`. May have `name`, `version` and `deterministic` as well."""
+    """A policy with a method `decide`. May have `name`, `version` and `deterministic` as well.
+
+    With a method `act`, from the turns of robots that decide for themselves to what they do, it is a protocol, too.
+    """
 
     def decide(self, question: Question, /) -> Groups: ...
 

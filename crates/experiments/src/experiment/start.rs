@@ -5,8 +5,8 @@ use std::path::Path;
 
 use scenario::seed::trial_number;
 use store::Failure;
-use teaming::{Asked, Assignment, Basis, PolicyError, Session, TrialStart};
-use usar_sim::simulation::Simulation;
+use teaming::{Act, Asked, Assignment, Basis, PolicyError, Session, TrialStart, Turn};
+use usar_sim::simulation::{Advance, Ask, Simulation};
 
 use super::{Case, Experiment, PolicySpec};
 use crate::run::{Player, Sessions};
@@ -44,7 +44,10 @@ impl Experiment {
         let place = self.describe(case);
         let mut trial =
             Simulation::new(&case.scenario, seed).map_err(|error| format!("{place}seed {seed}: {error}"))?;
-        trial.advance();
+        let turns = match trial.advance() {
+            Advance::Asks(Ask::Turns(turns)) => turns.to_vec(),
+            _ => Vec::new(),
+        };
         let (Some(question), team) = (trial.question(), trial.team()) else { return Ok(()) };
         let asked = Asked::of(question).knowing(&team);
         let start = TrialStart { scenario: &case.scenario.name, number: trial_number(seed) };
@@ -53,10 +56,14 @@ impl Experiment {
             let refused = |error: &dyn Display| format!("{place}seed {seed}: policy {}: {error}", spec.label);
             let Player { session, basis } =
                 sessions.of(number, spec.made()).map_err(|error| refused(&error))?;
-            let first = answer(session, &start, &asked).map_err(|error| refused(&error))?;
-            first.check(question).map_err(|error| refused(&error))?;
+            let ask = |session: &mut dyn Session| answer(session, &start, &turns, &asked);
+            let first = ask(session).map_err(|error| refused(&error))?;
+            if let Answer::Groups(groups) = &first {
+                groups.check(question).map_err(|error| refused(&error))?;
+            }
             if is_first && basis == Basis::Question {
-                let second = second_answer(spec, &start, &asked).map_err(|error| refused(&error))?;
+                let second = spec.made().open().and_then(|mut second| ask(&mut *second));
+                let second = second.map_err(|error| refused(&error))?;
                 if second != first {
                     return Err(refused(&differing(&[first, second])));
                 }
@@ -66,26 +73,33 @@ impl Experiment {
     }
 }
 
+/// What is answered to the first question.
+#[derive(PartialEq)]
+enum Answer {
+    /// By the base.
+    Groups(Assignment),
+    /// By robots that decide for themselves.
+    Acts(Vec<Act>),
+}
+
 fn answer(
     session: &mut dyn Session,
     start: &TrialStart<'_>,
+    turns: &[Turn],
     asked: &Asked<'_>,
-) -> Result<Assignment, PolicyError> {
+) -> Result<Answer, PolicyError> {
     session.reset(start)?;
-    Ok(session.decide(asked)?.assignment.sorted())
+    if turns.is_empty() {
+        return Ok(Answer::Groups(session.decide(asked)?.assignment.sorted()));
+    }
+    Ok(Answer::Acts(session.act(turns, asked)?))
 }
 
-/// The answer of another session.
-fn second_answer(
-    spec: &PolicySpec,
-    start: &TrialStart<'_>,
-    asked: &Asked<'_>,
-) -> Result<Assignment, PolicyError> {
-    answer(&mut *spec.made().open()?, start, asked)
-}
-
-fn differing(answers: &[Assignment; 2]) -> String {
-    let [first, second] = answers.each_ref().map(|answer| format!("{:?}", answer.groups));
+fn differing(answers: &[Answer; 2]) -> String {
+    let [first, second] = answers.each_ref().map(|answer| match answer {
+        Answer::Groups(assignment) => format!("{:?}", assignment.groups),
+        Answer::Acts(acts) => format!("{acts:?}"),
+    });
     format!(
         "it is no function of its question: asked the first question in two sessions, it answers {first} and \
          {second}. A policy may use nothing but the question: no clock, no random numbers of its own, no \
