@@ -170,7 +170,6 @@ pub enum ClaimRule {
 }
 
 impl ClaimRule {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a field by reference")]
     fn is_known(&self) -> bool {
         *self == Self::Known
     }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -26,8 +27,8 @@ use crate::session::{Asked, Driver, Session};
 ///     fn turn(&self, turn: &Turn) -> Result<Act, PolicyError> {
 ///         Ok(match &turn.rule {
 ///             Some(groups) => Act::joins(groups.clone()),
-///             None if turn.since_s < 1.0 => Act { wake_in_s: Some(1.0), ..Act::default() },
-///             None => Act { asks: true, ..Act::default() },
+///             None if turn.since_s < 1.0 => Act::waits(1.0 - turn.since_s),
+///             None => Act::asks(),
 ///         })
 ///     }
 /// }
@@ -62,6 +63,23 @@ pub struct Turn {
 }
 
 impl Turn {
+    /// Whether it is the robot's first turn.
+    #[must_use]
+    pub fn is_first(&self) -> bool {
+        self.state.is_null()
+    }
+
+    /// What the robot kept in mind, see [`Act::keeping`].
+    #[must_use]
+    pub fn mind<M: DeserializeOwned + Default>(&self) -> M {
+        M::deserialize(&self.state).unwrap_or_default()
+    }
+
+    /// What the robot was told, and by whom. What has another form is no message of the protocol.
+    pub fn heard<T: DeserializeOwned>(&self) -> impl Iterator<Item = (u32, T)> {
+        self.told.iter().filter_map(|told| Some((told.from, T::deserialize(&told.what).ok()?)))
+    }
+
     /// The same for whoever must not know the seed of the question, see [`Question::sealed`].
     #[must_use]
     pub fn sealed(&self) -> Self {
@@ -150,6 +168,32 @@ impl Act {
     #[must_use]
     pub fn joins(groups: Assignment) -> Self {
         Self { joins: Some(Choice::Groups(groups)), ..Self::default() }
+    }
+
+    /// Asks the rule.
+    #[must_use]
+    pub fn asks() -> Self {
+        Self { asks: true, ..Self::default() }
+    }
+
+    /// Waits so long, in seconds.
+    #[must_use]
+    pub fn waits(seconds: f64) -> Self {
+        Self { wake_in_s: Some(seconds.max(0.0)), ..Self::default() }
+    }
+
+    /// The same, and says this to all.
+    #[must_use]
+    pub fn saying(mut self, what: &impl Serialize) -> Self {
+        let what = serde_json::to_value(what).unwrap_or_default();
+        self.says.push(Say { to: None, what });
+        self
+    }
+
+    /// The same, and keeps this in mind.
+    #[must_use]
+    pub fn keeping(self, mind: &impl Serialize) -> Self {
+        Self { state: serde_json::to_value(mind).unwrap_or_default(), ..self }
     }
 }
 

@@ -15,7 +15,7 @@ use crate::simulation::{Simulation, State};
 const MAGIC: &[u8; 8] = b"USARSNAP";
 
 /// Version of the format. It increases whenever the layout of the state changes.
-pub const VERSION: u32 = 19;
+pub const VERSION: u32 = 20;
 
 const HEADER_BYTES: usize = 8 + 4 + 8 + 16;
 

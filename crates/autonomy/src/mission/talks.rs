@@ -201,7 +201,9 @@ impl Mission {
             seat.state = act.state.to_string();
             seat.told.clear();
             seat.turns += 1;
-            seat.wakes_at = act.wake_in_s.map(|seconds| scene.step + scene.model.steps_in(seconds));
+            // Who sleeps at all sleeps for a step.
+            let sleep = |seconds: f64| scene.model.steps_in(seconds).max(u64::from(seconds > 0.0));
+            seat.wakes_at = act.wake_in_s.map(|seconds| scene.step + sleep(seconds));
             said.extend(act.says.into_iter().map(|say| (robot, say)));
             sharing.extend(act.shares.then_some(robot));
             let stays = || Assignment {

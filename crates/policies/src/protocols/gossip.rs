@@ -11,6 +11,8 @@
 use serde::{Deserialize, Serialize};
 use teaming::{Act, PolicyError, Protocol, ProtocolKind, Talk, Turn};
 
+use super::LONGEST_S;
+
 /// Its options.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -34,10 +36,10 @@ const MOST: u32 = 100;
 pub fn kind() -> ProtocolKind {
     let about = "each says what it has heard of all, and decides by the newest";
     let kind = ProtocolKind::made("Gossip", about, |options: Gossip, _| match options {
-        Gossip { exchanges: 1..=MOST, every_s } if (0.0..=3600.0).contains(&every_s) => {
+        Gossip { exchanges: 1..=MOST, every_s } if (0.0..=LONGEST_S).contains(&every_s) => {
             Ok(Talk::shared(options))
         }
-        _ => Err(format!("exchanges must be 1 to {MOST}, and every_s 0 to 3600")),
+        _ => Err(format!("exchanges must be 1 to {MOST}, and every_s 0 to {LONGEST_S}")),
     });
     kind.from_sources(env!("SOURCES_PROTOCOL_GOSSIP"))
 }
@@ -47,11 +49,10 @@ impl Protocol for Gossip {
         if let Some(groups) = &turn.rule {
             return Ok(Act::joins(groups.clone()));
         }
-        let done = turn.state.as_u64().unwrap_or(0);
-        if done < u64::from(self.exchanges) {
-            let (wake_in_s, state) = (Some(self.every_s), (done + 1).into());
-            return Ok(Act { shares: true, wake_in_s, state, ..Act::default() });
+        let done: u32 = turn.mind();
+        if done < self.exchanges {
+            return Ok(Act { shares: true, ..Act::waits(self.every_s) }.keeping(&(done + 1)));
         }
-        Ok(Act { asks: true, state: turn.state.clone(), ..Act::default() })
+        Ok(Act::asks().keeping(&done))
     }
 }

@@ -19,7 +19,7 @@ fn talks(body: &str, more: &str) -> (tempfile::TempDir, Box<dyn Session>) {
     );
     let path = folder.path().join("talks.py");
     std::fs::write(&path, program).unwrap();
-    let text = format!("ENG by EXEC(command: [\"python3\", {path:?}]{more})");
+    let text = format!("ENG by EXEC(command: [\"python3\", \"{}\"]{more})", path.display());
     let session = registry_until(&Arc::default()).parse(&text).unwrap().open().unwrap();
     (folder, session)
 }

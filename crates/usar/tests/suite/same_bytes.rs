@@ -169,5 +169,5 @@ fn a_trial_goes_on_from_a_snapshot_in_a_new_process() {
     refused(&["--resume", "cut"], "cut: should have ");
     bytes[8] += 1;
     std::fs::write(folder.path().join("later"), &bytes).unwrap();
-    refused(&["--resume", "later"], "later: is a snapshot of format 20; this program reads format 19");
+    refused(&["--resume", "later"], "later: is a snapshot of format 21; this program reads format 20");
 }

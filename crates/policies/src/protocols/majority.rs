@@ -1,0 +1,70 @@
+//! `Majority`: each robot tells all how it sees the groups, waits, and goes where most see it. Among places
+//! with equally many votes it keeps its own, else it takes the first.
+//!
+//! By hand: robots 0, 1 and 2, two tasks. Robot 0 sees itself in the first group, 1 and 2 see robot 0 in the
+//! second: robot 0 goes to the second. If it does not hear robot 2, one vote stands against one, and it keeps
+//! its own place.
+
+use serde::{Deserialize, Serialize};
+use teaming::{Act, Assignment, Choice, PolicyError, Protocol, ProtocolKind, Talk, TaskId, Turn};
+
+use super::LONGEST_S;
+
+/// Its options.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Majority {
+    /// How long each waits for the views of the others, in seconds.
+    wait_s: f64,
+}
+
+impl Default for Majority {
+    fn default() -> Self {
+        Self { wait_s: 1.0 }
+    }
+}
+
+/// What a robot keeps in mind: its own place, and the votes for each.
+#[derive(Default, Serialize, Deserialize)]
+struct Votes {
+    own: usize,
+    of: Vec<u32>,
+}
+
+/// The kind.
+pub fn kind() -> ProtocolKind {
+    let about = "each tells how it sees the groups, and goes where most see it";
+    let kind = ProtocolKind::made("Majority", about, |options: Majority, _| {
+        let is_fit = (0.0..=LONGEST_S).contains(&options.wait_s);
+        is_fit.then(|| Talk::shared(options)).ok_or(format!("wait_s must be 0 to {LONGEST_S}"))
+    });
+    kind.from_sources(env!("SOURCES_PROTOCOL_MAJORITY"))
+}
+
+impl Protocol for Majority {
+    fn turn(&self, turn: &Turn) -> Result<Act, PolicyError> {
+        let mut votes: Votes = turn.mind();
+        votes.of.resize(turn.question.tasks.len(), 0);
+        let views = turn.heard::<Assignment>().filter_map(|(_, view)| view.task_of(turn.robot));
+        for task in views {
+            if let Some(count) = votes.of.get_mut(task.index()) {
+                *count += 1;
+            }
+        }
+        if let Some(view) = &turn.rule {
+            votes.own = view.task_of(turn.robot).map_or(0, TaskId::index);
+            votes.of[votes.own] += 1;
+            return Ok(Act::waits(self.wait_s).saying(view).keeping(&votes));
+        }
+        if turn.is_first() {
+            return Ok(Act::asks());
+        }
+        if turn.since_s < self.wait_s {
+            return Ok(Act::waits(self.wait_s - turn.since_s).keeping(&votes));
+        }
+        let most = votes.of.iter().max().copied().unwrap_or(0);
+        let first = votes.of.iter().position(|count| *count == most).unwrap_or(0);
+        let place = if votes.of[votes.own] == most { votes.own } else { first };
+        Ok(Act { joins: Some(Choice::Group(TaskId(place as u16))), ..Act::default() }.keeping(&votes))
+    }
+}
