@@ -166,8 +166,10 @@ fn in_random_worlds_robots_decide_soundly() {
         let mut file = (*xtask::worlds::world(seed)).clone();
         file.duration_s = 100.0;
         let pick = |of: u64| (seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32) % of;
-        let by = match pick(3) {
+        let by = match pick(5) {
             0 => String::new(),
+            3 => " by Majority".to_owned(),
+            4 => " by Leader(by: Energy, wait_s: 0.3)".to_owned(),
             more => format!(" by Gossip(exchanges: {more}, every_s: {})", [0.0, 0.5, 2.0][pick(3) as usize]),
         };
         let undecided = [Undecided::OwnView, Undecided::Base, Undecided::Stays][pick(11) as usize % 3];
@@ -245,7 +247,7 @@ fn what_a_robot_says_is_heard_by_those_in_reach() {
             assert!(ages.fold(0.0, f64::max) < 0.11, "{medium}: {:?}", turn.told.first());
             heard += told.len();
         }
-        assert!(heard > 10 && (heard < 143) == metres.is_finite(), "{medium}: {heard} of 143 were heard");
+        assert!(heard > 10 && (heard < 142) == metres.is_finite(), "{medium}: {heard} of 143 were heard");
     }
 }
 

@@ -153,6 +153,10 @@ pub(crate) fn acts(line: &[u8], id: u64, turns: usize) -> Result<Vec<Act>, Compl
         )));
     }
     for act in &mut acts {
+        // What is null is not said.
+        if let Value::Object(fields) = act {
+            fields.retain(|_, value| !value.is_null());
+        }
         if let Some(Value::Object(groups)) = act.get_mut("joins") {
             lists_of_lists(groups);
         }

@@ -58,6 +58,7 @@ pub enum Channel {
 /// A lie. Lies about a level turn the level x, in percent, into another, which lies between the floor and
 /// 100.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub enum Lie {
     /// x + by (100 - x).
     Exaggerate {

@@ -155,6 +155,7 @@ pub enum BeliefSharing {
 
 /// Who knows which robot claims which rescuee.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub enum ClaimRule {
     /// Its whole group, at once. The default.
     #[default]
@@ -177,6 +178,7 @@ impl ClaimRule {
 
 /// Who decides which robot goes to which task.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub enum Decider {
     /// The base, for all robots, by what it heard of them. The default.
     #[default]

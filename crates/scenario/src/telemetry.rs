@@ -173,6 +173,7 @@ impl Default for MediumRules {
 
 /// Loss of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub enum Loss {
     /// None. The default.
     #[default]
@@ -240,11 +241,15 @@ pub(super) fn telemetry(check: &mut Checker, file: &ScenarioFile) {
     if let Some(rules) = &file.medium {
         medium(check, rules);
     } else if file.mission.belief_sharing == BeliefSharing::ByRadio {
-        check.fail("mission.belief_sharing", "must not be ByRadio without a medium", "ByRadio");
+        check.fail(
+            "mission.belief_sharing",
+            "must not be ByRadio without a medium, such as medium: ()",
+            "ByRadio",
+        );
     }
     let shared = file.mission.belief_sharing;
     if file.mission.claims != ClaimRule::Known && shared != BeliefSharing::ByRadio {
-        let rule = "must be ByRadio where claims are told by radio";
+        let rule = "must be ByRadio, with a medium such as medium: (), where claims go by radio";
         check.fail("mission.belief_sharing", rule, format!("{shared:?}"));
     }
 }

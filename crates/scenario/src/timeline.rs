@@ -20,6 +20,7 @@ pub struct Moment {
 
 /// What happens at a time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub enum Happening {
     /// A fixed piece of debris falls: `DebrisFalls(shape: Disc(1.5), at: (20, 30))`. It falls once no robot
     /// on the ground is below it.

@@ -33,12 +33,9 @@ impl Driver for By {
     }
 
     fn basis(&self) -> Basis {
-        let is_undetermined = self.parts().any(|part| part.it.basis() == Basis::Undetermined);
-        match &self.rule {
-            _ if is_undetermined => Basis::Undetermined,
-            Some(rule) => rule.it.basis(),
-            None => self.protocol.it.basis(),
-        }
+        let is_any = |basis| self.parts().any(|part| part.it.basis() == basis);
+        let others = [Basis::Absent, Basis::Undetermined, Basis::Trial];
+        others.into_iter().find(|basis| is_any(*basis)).unwrap_or(Basis::Question)
     }
 
     fn needs_truth(&self) -> bool {

@@ -60,20 +60,19 @@ impl Join {
         own.iter().map(|robot| RobotId(*robot)).collect()
     }
 
-    /// Whether two robots saw each robot that both saw in the same place.
+    /// Whether two robots saw each robot that both saw in the same place; `None` if both saw none, as where
+    /// each names only its own task.
     #[must_use]
-    pub fn agrees_with(&self, other: &Self) -> bool {
+    pub fn agrees_with(&self, other: &Self) -> Option<bool> {
         let places = |sees: &Assignment| {
             let groups = sees.groups.iter().zip(1_usize..).chain([(&sees.idle, 0)]);
             let places = groups.flat_map(|(group, place)| group.iter().map(move |robot| (*robot, place)));
             places.collect::<BTreeMap<u32, usize>>()
         };
-        if self.sees == other.sees {
-            return true;
-        }
         let theirs = places(&other.sees);
-        let is_same = |(robot, place): (&u32, &usize)| theirs.get(robot).is_none_or(|other| other == place);
-        places(&self.sees).iter().all(is_same)
+        let both =
+            places(&self.sees).into_iter().filter_map(|(robot, place)| Some((place, *theirs.get(&robot)?)));
+        both.map(|(place, other)| place == other).reduce(|all, same| all && same)
     }
 }
 

@@ -126,6 +126,11 @@ impl PolicySpec {
         before(&rule, self.protocol.as_deref())
     }
 
+    /// What stands behind `by`: how its robots talk.
+    pub fn protocol(&self) -> Option<&str> {
+        self.protocol.as_deref()
+    }
+
     /// The written options, with their values in RON.
     pub fn options(&self) -> &[(String, String)] {
         &self.options

@@ -30,13 +30,16 @@ impl PolicySpec {
     }
 
     /// A sentence about a policy whose estimator has nothing to judge in a scenario, or needs more raters
-    /// than the smallest group has.
+    /// than the smallest group has, or whose robots have nothing to talk about.
     fn doubt(&self, scenario: &Scenario) -> Option<String> {
         let (label, name) = (&self.label, &scenario.name);
         if Written::of(self.written()).guide.is_some() && !scenario.goes_by_reports() {
             return Some(format!(
                 "{label}: {name} has no reports, medium or deceit: the estimator judges nothing"
             ));
+        }
+        if self.protocol().is_some() && scenario.mission.decides.is_base() {
+            return Some(format!("{label}: in {name} the base decides: what is behind `by` does nothing"));
         }
         let least = self.made().it.least_raters()?;
         let size = smallest_group(scenario)?;

@@ -6,7 +6,7 @@ use usar_sim::record::{DecisionRecord, Join, TrialRecord};
 
 /// Mean share of pairs of robots that saw the same groups.
 pub(super) fn agreement(record: &TrialRecord) -> Option<f64> {
-    mean(record.decisions.iter().filter_map(|made| share(pairs(made).map(|(a, b)| a.agrees_with(b)))))
+    mean(record.decisions.iter().filter_map(|made| share(pairs(made).filter_map(|(a, b)| a.agrees_with(b)))))
 }
 
 fn pairs(made: &DecisionRecord) -> impl Iterator<Item = (&Join, &Join)> {
@@ -44,8 +44,10 @@ pub(super) fn never_heard(record: &TrialRecord) -> Option<f64> {
 
 /// Mean time in which robots agreed on all groups, in seconds, over the decisions in which they did.
 pub(super) fn seconds_to_agree(record: &TrialRecord) -> Option<f64> {
-    let agreed =
-        |made: &&DecisionRecord| !made.joins.is_empty() && pairs(made).all(|(a, b)| a.agrees_with(b));
+    let agreed = |made: &&DecisionRecord| {
+        let mut both = pairs(made).filter_map(|(a, b)| a.agrees_with(b)).peekable();
+        both.peek().is_some() && both.all(|agree| agree)
+    };
     let last = |made: &DecisionRecord| made.joins.iter().map(|join| join.after_s).reduce(f64::max);
     mean(record.decisions.iter().filter(agreed).filter_map(last))
 }

@@ -24,11 +24,30 @@ impl Default for Majority {
     }
 }
 
-/// What a robot keeps in mind: its own place, and the votes for each.
+/// What a robot keeps in mind: how it sees the groups, and the votes for each place of its own.
 #[derive(Default, Serialize, Deserialize)]
 struct Votes {
-    own: usize,
+    view: Option<Assignment>,
     of: Vec<u32>,
+}
+
+impl Votes {
+    /// The place with most votes; on a tie the own one, else the first.
+    fn place(&self, robot: u32) -> usize {
+        let most = self.of.iter().max().copied().unwrap_or(0);
+        let own = self.view.as_ref().and_then(|view| view.task_of(robot)).map(TaskId::index);
+        let best = |place: &usize| self.of.get(*place) == Some(&most);
+        own.filter(best).or_else(|| (0..self.of.len()).find(best)).unwrap_or(0)
+    }
+
+    /// The groups as the robot sees them, but for itself, which goes where most see it.
+    fn decision(mut self, robot: u32) -> Option<Assignment> {
+        let place = self.place(robot);
+        let mut view = self.view.take()?;
+        view.groups.iter_mut().chain([&mut view.idle]).for_each(|group| group.retain(|id| *id != robot));
+        view.groups.get_mut(place)?.push(robot);
+        Some(view.sorted())
+    }
 }
 
 /// The kind.
@@ -52,8 +71,10 @@ impl Protocol for Majority {
             }
         }
         if let Some(view) = &turn.rule {
-            votes.own = view.task_of(turn.robot).map_or(0, TaskId::index);
-            votes.of[votes.own] += 1;
+            if let Some(count) = view.task_of(turn.robot).and_then(|task| votes.of.get_mut(task.index())) {
+                *count += 1;
+            }
+            votes.view = Some(view.clone());
             return Ok(Act::waits(self.wait_s).saying(view).keeping(&votes));
         }
         if turn.is_first() {
@@ -62,9 +83,6 @@ impl Protocol for Majority {
         if turn.since_s < self.wait_s {
             return Ok(Act::waits(self.wait_s - turn.since_s).keeping(&votes));
         }
-        let most = votes.of.iter().max().copied().unwrap_or(0);
-        let first = votes.of.iter().position(|count| *count == most).unwrap_or(0);
-        let place = if votes.of[votes.own] == most { votes.own } else { first };
-        Ok(Act { joins: Some(Choice::Group(TaskId(place as u16))), ..Act::default() }.keeping(&votes))
+        Ok(Act { joins: votes.decision(turn.robot).map(Choice::Groups), ..Act::default() })
     }
 }

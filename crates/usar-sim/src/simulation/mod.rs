@@ -104,8 +104,8 @@ pub enum AssignError {
         robot: u32,
         /// The field of its act.
         field: &'static str,
-        /// What the field must be.
-        rule: &'static str,
+        /// What the field must be, and what was found.
+        rule: String,
     },
 }
 
@@ -272,7 +272,8 @@ impl Simulation {
         } else {
             // A robot that decides for itself cannot play the trial on.
             let acts = session.act(&self.turns, &asked).map_err(reason);
-            acts.and_then(|acts| self.act(acts).map_err(|error| error.to_string()))
+            let round = question.round;
+            acts.and_then(|acts| self.act(acts).map_err(|error| format!("round {round}: {error}")))
         };
         if let Err(reason) = taken {
             self.failure = Some(format!("the policy failed: {reason}"));

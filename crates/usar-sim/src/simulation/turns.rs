@@ -27,7 +27,7 @@ impl Simulation {
         let deeds = deeds.collect::<Result<_, _>>()?;
         let (mission, mut scene) = self.state.scene(&self.setup.model);
         mission.act_in_turn(deeds, &mut scene).map_err(|endless| {
-            let (field, rule) = ("wake_in_s", "not be 0 again and again");
+            let (field, rule) = ("wake_in_s", "not be 0 again and again".to_owned());
             AssignError::Act { robot: endless.0.0, field, rule }
         })?;
         self.take_question();
@@ -42,27 +42,35 @@ impl Simulation {
 
     /// What a robot does, once it is checked.
     fn deed(&self, turn: &Turn, mut act: Act) -> Result<Deed, AssignError> {
-        let refused = |field, rule| AssignError::Act { robot: turn.robot, field, rule };
+        let refused = |field, rule: String| Err(AssignError::Act { robot: turn.robot, field, rule });
         let is_long = |value: &serde_json::Value| value.to_string().len() > MOST_STATE;
         if is_long(&act.state) {
-            return Err(refused("state", "have at most 16 KiB of JSON"));
+            return refused("state", "have at most 16 KiB of JSON".to_owned());
         }
         if act.says.iter().any(|say| is_long(&say.what)) {
-            return Err(refused("says", "have at most 16 KiB of JSON each"));
+            return refused("says", "have at most 16 KiB of JSON each".to_owned());
         }
-        if act.wake_in_s.is_some_and(|seconds| !(0.0..=MOST_SLEEP_S).contains(&seconds)) {
-            return Err(refused("wake_in_s", "be 0 to 86400"));
+        let robots = self.model().robots.len() as u32;
+        let mut named = act.says.iter().filter_map(|say| say.to);
+        if let Some(to) = named.find(|to| *to >= robots || *to == turn.robot) {
+            return refused("says", format!("be to the number of another robot, found {to}"));
+        }
+        if let Some(found) = act.wake_in_s.filter(|seconds| !(0.0..=MOST_SLEEP_S).contains(seconds)) {
+            return refused("wake_in_s", format!("be 0 to 86400, found {found}"));
         }
         if act.asks {
-            return Err(refused("asks", "be false: there is no rule before `by`"));
+            return refused("asks", "be false: there is no rule before `by`".to_owned());
         }
         let tasks = self.model().tasks.len();
-        let seen = |choice: Choice| choice.seen_by(turn.robot, tasks);
-        let sees =
-            act.joins.take().map(|choice| seen(choice).ok_or(refused("joins", "be the number of a task")));
-        let sees = sees.transpose()?;
+        if let Some(Choice::Group(task)) = &act.joins
+            && task.index() >= tasks
+        {
+            let rule = format!("be the number of a task, 0 to {}, found {}", tasks - 1, task.0);
+            return refused("joins", rule);
+        }
+        let sees = act.joins.take().and_then(|choice| choice.seen_by(turn.robot, tasks));
         if let Some(sees) = &sees {
-            check(sees, &turn.question, turn.robot)?;
+            check(sees, turn.robot, tasks, robots)?;
         }
         let ages_s = if sees.is_some() { self.ages_s(&turn.question, turn.robot) } else { BTreeMap::new() };
         Ok(Deed { act, sees, ages_s })
@@ -91,9 +99,10 @@ impl Simulation {
     }
 }
 
-/// Whether a robot may see the groups so: each member at most once, nobody else, and itself.
-fn check(sees: &Assignment, question: &Question, robot: u32) -> Result<(), AssignmentError> {
-    let (found, tasks) = (sees.groups.len(), question.tasks.len());
+/// Whether a robot may see the groups so: each robot at most once, none that there is not, and itself. It may
+/// see some that it would not have grouped itself, because it knows that they stay out.
+fn check(sees: &Assignment, robot: u32, tasks: usize, robots: u32) -> Result<(), AssignmentError> {
+    let found = sees.groups.len();
     if found != tasks {
         return Err(AssignmentError::Groups { found, tasks });
     }
@@ -102,7 +111,7 @@ fn check(sees: &Assignment, question: &Question, robot: u32) -> Result<(), Assig
     if let Some(pair) = seen.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(AssignmentError::Twice { robot: pair[0] });
     }
-    if let Some(stranger) = seen.iter().find(|id| question.members.iter().all(|member| member.id != **id)) {
+    if let Some(stranger) = seen.iter().find(|id| **id >= robots) {
         return Err(AssignmentError::Stranger { robot: *stranger });
     }
     if seen.binary_search(&robot).is_err() { Err(AssignmentError::Missing { robot }) } else { Ok(()) }

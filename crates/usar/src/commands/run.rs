@@ -245,6 +245,11 @@ fn tell(out: &mut Report, record: &TrialRecord, words: &Words) {
         let (done, unreachable) = (record.counts.errands_done, record.counts.unreachable);
         out.say(format!("places       {done} errands done, {unreachable} places given up as unreachable"));
     }
+    let joins = || record.decisions.iter().flat_map(|made| &made.joins);
+    let late = joins().filter(|join| join.is_late).count();
+    if late > 0 {
+        out.say(format!("negotiated   {late} of {} joins were out of time", joins().count()));
+    }
     for CutOff { robot, first_s, times, place: [x, y], cause } in &record.cut_off {
         let why = cause.name();
         out.say(format!(

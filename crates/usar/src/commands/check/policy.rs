@@ -47,6 +47,13 @@ pub(super) fn check(text: &str, registry: &Registry) -> Result<Report, Failure> 
             spec.label
         );
     }
+    if spec.protocol().is_some() {
+        refuse!(
+            "--policy: {}: random questions check a rule; how robots talk shows in a trial in which they decide, as \
+             in `usar run --check tunnel --set mission.decides=Robots()`",
+            spec.label
+        );
+    }
     let opened = |error: PolicyError| Failure::input(format!("policy {}: {error}", spec.label));
     let begun = Instant::now();
     let mut session = spec.made().open().map_err(opened)?;

@@ -67,8 +67,11 @@ fn who_decided(account: &Account) -> String {
         return format!("{policy} decided");
     }
     let pairs = joins.iter().enumerate().flat_map(|(i, a)| joins[i + 1..].iter().map(move |b| (a, b)));
-    let same = pairs.filter(|(a, b)| a.agrees_with(b)).count();
-    let all = joins.len() * (joins.len() - 1) / 2;
+    let compared: Vec<bool> = pairs.filter_map(|(a, b)| a.agrees_with(b)).collect();
+    let (same, all) = (compared.iter().filter(|same| **same).count(), compared.len());
+    if all == 0 {
+        return format!("each robot decided by {policy}, and named only its own task");
+    }
     format!("each robot decided by {policy}: {same} of {all} pairs saw the same groups")
 }
 
@@ -79,7 +82,7 @@ fn join(out: &mut Report, join: &Join, question: &Question) {
         .map(|task| format!("{} {}", question.tasks[task.index()].name, ids(join.sees.of(task))));
     let late = if join.is_late { ", when its time was over" } else { "" };
     let (after_s, groups) = (join.after_s, groups.collect::<Vec<_>>().join("; "));
-    out.say(format!("  After {after_s:.1} s{late}, it saw the groups {groups}"));
+    out.say(format!("  {after_s:.1} s after the negotiation began{late}, it saw the groups {groups}"));
     let age = |(robot, age): (&u32, &Option<f64>)| match age {
         Some(seconds) => format!("{robot}: {seconds:.1} s"),
         None => format!("{robot}: never"),
