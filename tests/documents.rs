@@ -199,7 +199,7 @@ fn commands_on_the_pages_have_the_options_of_the_program() {
 
 /// Verdicts on seeds that an earlier run had used, from before the ledger or of one study: starts of both
 /// names.
-const KNOWN_OVERLAPS: [(&str, &str, &str); 8] = [
+const KNOWN_OVERLAPS: [(&str, &str, &str); 9] = [
     ("rivals", "rivals", "nine worlds of one study"),
     ("trust-fresh", "trust-fresh", "seven worlds of one study"),
     ("trust-helped", "trust-fresh", "another policy, and its page says so"),
@@ -208,6 +208,7 @@ const KNOWN_OVERLAPS: [(&str, &str, &str); 8] = [
     ("estimator-options-fresh", "estimator-options-fresh", "five worlds of one study"),
     ("deciders-", "deciders-", "five worlds of one study"),
     ("heard-", "heard-", "five worlds of one study, with and without gossip"),
+    ("claims-heard-", "claims-heard-", "two worlds of one study"),
 ];
 
 /// Seeds of `usar search` by default, with as many trials as it takes; no verdict of a study is on them.

@@ -11,7 +11,7 @@ use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
 use scenario::seed::trial_number;
-use teaming::protocol::each_alone;
+use teaming::session::each_alone;
 use teaming::{
     Act, Asked, Assignment, Basis, Decision, Driver, PolicyError, PolicyKind, Question, Registry, Session,
     TrialStart, Turn,
@@ -141,10 +141,14 @@ impl Policies {
                         stop: Arc::clone(&call.stop),
                         caller: call.caller.clone(),
                     };
+                    let talks = own.act.is_some();
                     let driver: Arc<dyn Driver> = Arc::new(Handle(Arc::new(own)));
                     let kind = PolicyKind::without_options(&name, "a policy in Python", driver);
-                    registry.add(kind).map_err(taken)?;
-                    written.push(name);
+                    registry.add(kind.clone()).map_err(taken)?;
+                    if talks {
+                        registry.add_protocol(kind).map_err(taken)?;
+                    }
+                    written.push(if talks { format!("{name}={name} by {name}") } else { name });
                 }
             }
         }
@@ -232,13 +236,9 @@ impl Session for OwnSession {
     }
 
     fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
-        match &self.policy.act {
-            Some(act) if turns.iter().all(|turn| turn.late.is_none()) => {
-                let answer = self.policy.ask_acts(act, turns).ok_or(PolicyError::Late)?;
-                answer.map_err(|error| self.raise(error, base.question.round))
-            }
-            _ => each_alone(self, turns, base),
-        }
+        let Some(act) = &self.policy.act else { return each_alone(self, turns, base) };
+        let answer = self.policy.ask_acts(act, turns).ok_or(PolicyError::Late)?;
+        answer.map_err(|error| self.raise(error, base.question.round))
     }
 }
 

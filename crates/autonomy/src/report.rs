@@ -125,13 +125,6 @@ pub enum Statement {
         /// Whether it is in nobody's way, because it flies.
         is_aerial: bool,
     },
-    /// The sender claims a rescuee, or none.
-    Claims(Option<Claim>),
-    /// The sender gives up on a rescuee, which it cannot reach or load.
-    GivesUp {
-        /// The rescuee.
-        rescuee: RescueeId,
-    },
     /// A robot has these levels and needs.
     LevelsAre(Levels),
     /// A robot goes so fast.
@@ -151,6 +144,13 @@ pub enum Statement {
         round: u32,
         /// What, in JSON.
         what: String,
+    },
+    /// The sender claims a rescuee, or none.
+    Claims(Option<Claim>),
+    /// The sender gives up on a rescuee, which it cannot reach or load.
+    GivesUp {
+        /// The rescuee.
+        rescuee: RescueeId,
     },
 }
 

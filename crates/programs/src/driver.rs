@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-use teaming::protocol::each_alone;
+use teaming::session::each_alone;
 use teaming::{
     Act, Asked, Basis, Deadline, Decision, Driver, PolicyError, PolicyKind, Question, Registry,
     RegistryError, Session, TrialStart, Turn,
@@ -346,6 +346,18 @@ impl ProgramSession {
         Err(self.lose(error, asked.question))
     }
 
+    /// Sends turns, in as few lines as may be.
+    fn ask_acts(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
+        let line = |id: u64, trial: Option<Trial<'_>>| Message::Turns { id, trial, turns }.line();
+        if turns.len() > 1 && line(u64::MAX, None).len() > MOST_BYTES / 2 {
+            let (first, rest) = turns.split_at(turns.len() / 2);
+            let mut acts = self.ask_acts(first, base)?;
+            acts.extend(self.ask_acts(rest, base)?);
+            return Ok(acts);
+        }
+        self.ask(base, line, |line, id| acts(line, id, turns.len()))
+    }
+
     /// Notes that a process came to the end of a trial.
     fn end_trial(&mut self) {
         if self.trial.is_some() && self.process.is_some() && self.questions > 0 {
@@ -404,11 +416,7 @@ impl Session for ProgramSession {
             return each_alone(self, turns, base);
         }
         let sealed: Vec<Turn> = turns.iter().map(Turn::sealed).collect();
-        self.ask(
-            base,
-            |id, trial| Message::Turns { id, trial, turns: &sealed }.line(),
-            |line, id| acts(line, id, turns.len()),
-        )
+        self.ask_acts(&sealed, base)
     }
 }
 

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use crate::decision::Decision;
 use crate::error::PolicyError;
 use crate::made::MadePolicy;
-use crate::protocol::{Act, Turn, each_alone};
-use crate::session::{Asked, Basis, Driver, Session, TrialStart};
+use crate::protocol::{Act, Turn};
+use crate::session::{Asked, Basis, Driver, Session, TrialStart, each_alone};
 
 /// How often robots may ask their rule in one turn.
 const MOST_ASKED: usize = 3;

@@ -1,17 +1,14 @@
 //! Protocols: how robots that decide for themselves come to their decisions. A robot says things, hears
 //! things, wakes up, and at last joins a group.
 
-use std::sync::Arc;
-
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::decision::{Assignment, Decision};
+use crate::decision::Assignment;
 use crate::error::PolicyError;
 use crate::ids::TaskId;
 use crate::question::Question;
-use crate::session::{Asked, Driver, Session};
 
 /// A protocol among robots, as a function of one robot's turn: what it keeps in mind travels with the turn,
 /// so that no robot can know what it was not told.
@@ -208,56 +205,5 @@ impl Choice {
             Self::Stays(_) => seen.idle.push(robot),
         }
         Some(seen)
-    }
-}
-
-/// Each robot joins the group in which its own decision has it. One that is out of time may have to do as the
-/// base says, whose question `base` is.
-///
-/// # Errors
-/// Those of [`Session::decide`].
-pub fn each_alone(
-    session: &mut (impl Session + ?Sized),
-    turns: &[Turn],
-    base: &Asked<'_>,
-) -> Result<Vec<Act>, PolicyError> {
-    let mut of_base = None;
-    let mut act = |turn: &Turn| {
-        let decision = match turn.late {
-            Some(Undecided::Stays) => return Ok(Act::default()),
-            Some(Undecided::Base) => match &of_base {
-                Some(decision) => Decision::clone(decision),
-                None => of_base.insert(session.decide(base)?).clone(),
-            },
-            Some(Undecided::OwnView) | None => session.decide(&base.about(&turn.question))?,
-        };
-        Ok(Act::joins(decision.assignment))
-    };
-    turns.iter().map(&mut act).collect()
-}
-
-/// A protocol as a driver of turns.
-pub struct Talk<P>(Arc<P>);
-
-impl<P: Protocol + 'static> Talk<P> {
-    /// The driver of a protocol.
-    pub fn shared(protocol: P) -> Arc<dyn Driver> {
-        Arc::new(Self(Arc::new(protocol)))
-    }
-}
-
-impl<P: Protocol + 'static> Driver for Talk<P> {
-    fn open(&self) -> Result<Box<dyn Session>, PolicyError> {
-        Ok(Box::new(Self(Arc::clone(&self.0))))
-    }
-}
-
-impl<P: Protocol> Session for Talk<P> {
-    fn decide(&mut self, _: &Asked<'_>) -> Result<Decision, PolicyError> {
-        Err(PolicyError::NoRule)
-    }
-
-    fn act(&mut self, turns: &[Turn], _: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
-        turns.iter().map(|turn| self.0.turn(turn)).collect()
     }
 }

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::decision::Decision;
 use crate::error::PolicyError;
 use crate::policy::Policy;
-use crate::protocol::{Act, Turn, each_alone};
+use crate::protocol::{Act, Turn, Undecided};
 use crate::question::{Member, Question};
 use crate::truth::Truth;
 
@@ -120,6 +120,31 @@ pub trait Session: Send {
     fn act(&mut self, turns: &[Turn], base: &Asked<'_>) -> Result<Vec<Act>, PolicyError> {
         each_alone(self, turns, base)
     }
+}
+
+/// Each robot joins the group in which its own decision has it. One that is out of time may have to do as the
+/// base says, whose question `base` is.
+///
+/// # Errors
+/// Those of [`Session::decide`].
+pub fn each_alone(
+    session: &mut (impl Session + ?Sized),
+    turns: &[Turn],
+    base: &Asked<'_>,
+) -> Result<Vec<Act>, PolicyError> {
+    let mut of_base = None;
+    let mut act = |turn: &Turn| {
+        let decision = match turn.late {
+            Some(Undecided::Stays) => return Ok(Act::default()),
+            Some(Undecided::Base) => match &of_base {
+                Some(decision) => Decision::clone(decision),
+                None => of_base.insert(session.decide(base)?).clone(),
+            },
+            Some(Undecided::OwnView) | None => session.decide(&base.about(&turn.question))?,
+        };
+        Ok(Act::joins(decision.assignment))
+    };
+    turns.iter().map(&mut act).collect()
 }
 
 /// A trial that begins.

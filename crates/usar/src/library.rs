@@ -30,7 +30,8 @@ const FILES: &[(&str, &str)] = files![
     "warehouse.ron" "warehouse.sweep.ron"
     "trust/aftershocks.ron" "trust/avalanche.ron" "trust/convoy.ron" "trust/flood.ron" "trust/tunnel.ron"
     "gallery/chance.ron" "gallery/collapse.ron" "gallery/corridors.ron" "gallery/failures.ron"
-    "gallery/one-task.ron" "gallery/stepping-stones.ron" "gallery/two-hundred.ron"
+    "gallery/one-task.ron" "gallery/stepping-stones.ron" "gallery/two-camps.ron"
+    "gallery/two-hundred.ron"
 ];
 
 /// The scenario with this name, as its own path or as a word: `paper`, `paper.ron`, `scenarios/paper.ron`.

@@ -250,7 +250,7 @@ impl Crew {
         self.groups[task.index()] = Group { members, at_work };
     }
 
-    /// A robot takes its part of the sweep of its task, which it shares with those whom it holds for its mates.
+    /// A robot takes its part of the sweep of its task, among those whom it holds for its mates.
     pub(super) fn share_sweep(&mut self, id: RobotId, mates: &[RobotId], model: &Model, team: &[KnownRobot]) {
         let (robot, agent) = (&team[id.index()], &mut self.agents[id.index()]);
         let Some(task) = agent.task else { return };

@@ -5,6 +5,7 @@ mod agent;
 mod claims;
 mod crew;
 mod errands;
+mod heard_claims;
 mod progress;
 mod question;
 mod regroup;

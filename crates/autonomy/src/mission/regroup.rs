@@ -4,7 +4,7 @@ use scenario::{Decider, LevelSource};
 use teaming::{Assignment, Question};
 
 use super::question::question;
-use super::{Activity, Gathered, Mission, Pending, Scene, Talks};
+use super::{Activity, Gathered, Join, Mission, Pending, Scene, Talks};
 use crate::belief::KnownRobot;
 use crate::belief::{Beliefs, Holder};
 use crate::event::{Event, EventLog};
@@ -53,7 +53,7 @@ impl Mission {
     /// restocks; it knows what it hands out.
     pub(super) fn open_round(&mut self, scene: &mut Scene) -> Vec<RobotId> {
         self.round += 1;
-        self.claims.begin_round();
+        self.claims.begin_round(scene.step);
         let mut restocked = Vec::new();
         for id in self.at_home(&scene.beliefs.team) {
             let robot = &mut scene.beliefs.team[id.index()];
@@ -123,7 +123,7 @@ impl Mission {
         let is_empty = question.members.is_empty();
         self.pending = Some(Pending { question, turns: Vec::new(), unfit: who.unfit });
         if is_empty {
-            self.assign(&Assignment::new(vec![Vec::new(); self.crew.groups.len()]), scene);
+            self.assign(&Assignment::new(vec![Vec::new(); self.crew.groups.len()]), &[], scene);
         }
     }
 
@@ -153,10 +153,10 @@ impl Mission {
     }
 
     /// Sends the groups out, and the unfit robots to rest. The assignment must answer the question that waits
-    /// for one, or be what came of a negotiation, which ends.
-    pub fn assign(&mut self, assignment: &Assignment, scene: &mut Scene) {
+    /// for one, or be what came of these joins of a negotiation, which ends.
+    pub fn assign(&mut self, assignment: &Assignment, joins: &[Join], scene: &mut Scene) {
         let Some(Pending { unfit, .. }) = self.pending.take() else { return };
-        let talks = self.talks.take();
+        let robots_decided = self.talks.take().is_some();
         self.crew.agents.iter_mut().for_each(|agent| agent.rests_given_up = 0);
         let ids = |group: &Vec<u32>| group.iter().map(|id| RobotId(*id)).collect::<Vec<_>>();
         let groups: Vec<Vec<RobotId>> = assignment.groups.iter().map(ids).collect();
@@ -170,17 +170,13 @@ impl Mission {
             holders.for_each(|holder| scene.beliefs.depart(holder));
             self.crew.send_out(task, members, scene.model, &scene.beliefs.team);
         }
-        for join in talks.iter().flat_map(Talks::joins) {
-            let (robot, mates) = (RobotId(join.robot), join.mates());
-            let is_followed = self.crew.group_of(robot) == join.sees.task_of(join.robot);
-            // Who names nobody else looks who goes along.
-            if is_followed && mates.len() > 1 {
-                self.crew.share_sweep(robot, &mates, scene.model, &scene.beliefs.team);
-            }
+        // Who names nobody else looks who goes along.
+        for join in joins.iter().filter(|join| join.names_others()) {
+            self.crew.share_sweep(RobotId(join.robot), &join.mates(), scene.model, &scene.beliefs.team);
         }
         unfit.iter().for_each(|(id, cause)| self.crew.send_to_rest(*id, *cause, scene));
         if let Decider::Robots { retry_s, .. } = scene.model.mission.decides
-            && talks.is_some()
+            && robots_decided
             && !self.crew.groups.iter().any(|group| group.at_work)
         {
             self.waits_until = scene.step + scene.model.steps_in(retry_s);

@@ -13,7 +13,7 @@ use crate::report::Statement;
 use crate::telemetry::Mail;
 
 /// So often a robot may wake up in one step.
-const MOST_TURNS: u32 = 100;
+const MOST_TURNS: u32 = 200;
 
 /// A negotiation before a round.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -60,6 +60,11 @@ impl Join {
         own.iter().map(|robot| RobotId(*robot)).collect()
     }
 
+    /// Whether it sees the place of any robot but itself.
+    pub(super) fn names_others(&self) -> bool {
+        self.sees.groups.iter().chain([&self.sees.idle]).map(Vec::len).sum::<usize>() > 1
+    }
+
     /// Whether two robots saw each robot that both saw in the same place; `None` if both saw none, as where
     /// each names only its own task.
     #[must_use]
@@ -94,11 +99,6 @@ impl Talks {
         };
         let seats = who.fit.iter().map(seat).collect();
         Self { who, since_step: step, seats }
-    }
-
-    /// How robots have decided so far.
-    pub(super) fn joins(&self) -> impl Iterator<Item = &Join> {
-        self.seats.iter().filter_map(|seat| seat.joined.as_ref())
     }
 
     fn due(&self) -> impl Iterator<Item = &Seat> {
@@ -138,8 +138,8 @@ impl Mission {
                 seat.hear(telemetry.take_mail(seat.robot, self.round));
             }
             seat.turns = 0;
-            let is_waited_for = is_late && seat.joined.is_none();
-            seat.is_due = !seat.told.is_empty() || seat.wakes_by(scene.step) || is_waited_for;
+            let has_turn = is_late || !seat.told.is_empty() || seat.wakes_by(scene.step);
+            seat.is_due = has_turn && !(is_late && seat.joined.is_some());
         }
         self.hear_turns(talks, scene);
     }
@@ -214,15 +214,17 @@ impl Mission {
                 seat.joined = Some(Join { robot: robot.0, sees, ages_s, after_s, is_late });
             }
         }
-        for (robot, say) in said {
-            self.say(robot, &say, &mut talks, scene);
+        for speaker in self.in_turn(scene) {
+            for (robot, say) in said.iter().filter(|(robot, _)| *robot == speaker) {
+                self.say(*robot, say, &mut talks, scene);
+            }
         }
         self.with_telemetry(scene, |telemetry, now, log| telemetry.end_turn(&sharing, now, log));
         for seat in &mut talks.seats {
             if let Some(telemetry) = scene.telemetry.as_deref_mut() {
                 seat.hear(telemetry.take_mail(seat.robot, self.round));
             }
-            seat.is_due = seat.wakes_by(scene.step);
+            seat.is_due = seat.wakes_by(scene.step) && !(is_late && seat.joined.is_some());
             if seat.is_due && seat.turns >= MOST_TURNS {
                 return Err(Endless(seat.robot));
             }
@@ -251,7 +253,7 @@ impl Mission {
     /// Notes what is known at a question, instead of what was known at the last of the same negotiation.
     pub(super) fn note_question(&self, is_first: bool, scene: &mut Scene) {
         if let Some(telemetry) = scene.telemetry.as_deref_mut() {
-            telemetry.close_rounds_of_peers(scene.beliefs.ledger.rounds(), scene.model);
+            telemetry.close_rounds_of_peers(scene.beliefs.ledger.rounds(), is_first, scene.model);
             telemetry.note_question(self.round, is_first);
         }
     }
@@ -284,7 +286,9 @@ fn late(scene: &Scene, since_step: u64) -> Option<Undecided> {
 fn late_by(model: &crate::model::Model, step: u64, since_step: u64) -> Option<Undecided> {
     match model.mission.decides {
         Decider::Robots { deadline_s, undecided, .. } => {
-            (step >= since_step + model.steps_in(deadline_s)).then_some(undecided)
+            // At the deadline itself robots may still decide.
+            let is_over = step > since_step + model.steps_in(deadline_s) || deadline_s == 0.0;
+            is_over.then_some(undecided)
         }
         Decider::Base => None,
     }

@@ -1,47 +1,20 @@
 //! Claims by radio: each robot knows its own claim and those that it heard of. Of two on one rescuee the
 //! nearer robot keeps its claim, then the one with the lower id; who does not hear of another goes on.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use scenario::ClaimRule;
-use serde::{Deserialize, Serialize};
 
 use super::claims::{NewClaims, Offer, Seeker};
+use super::heard_claims::Heard;
 use super::{Activity, Mission, Scene};
 use crate::belief::Holder;
-use crate::ids::{RescueeId, RobotId};
+use crate::ids::RobotId;
 use crate::report::{Claim, Message, Report, Speaker, Statement};
+use crate::telemetry::in_turn;
 
 /// A claim that was not heard again for this many times the time between two tellings counts no longer.
 const LAPSE: u64 = 3;
-
-/// What a robot knows of claims.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub(super) struct HeardClaims {
-    /// The last claim that each mate told, and the step in which it was heard.
-    mates: BTreeMap<RobotId, (Claim, u64)>,
-    /// Rescuees that were given up, as far as the robot knows.
-    given_up: BTreeSet<RescueeId>,
-    /// Those of which it has not told its mates.
-    untold: Vec<RescueeId>,
-    /// The last claim that it told, and the step in which it did.
-    told: Option<(Claim, u64)>,
-}
-
-impl HeardClaims {
-    /// Whether a rescuee is free, as far as the robot knows. Claims of the same step still compete.
-    pub(super) fn is_free(&self, rescuee: RescueeId, step: u64) -> bool {
-        let is_taken = |claim: &Claim| claim.rescuee == rescuee && claim.since_step < step;
-        !self.given_up.contains(&rescuee) && !self.mates.values().any(|(claim, _)| is_taken(claim))
-    }
-
-    /// Gives a rescuee up, and is to tell its mates.
-    pub(super) fn give_up(&mut self, rescuee: RescueeId) {
-        if self.given_up.insert(rescuee) {
-            self.untold.push(rescuee);
-        }
-    }
-}
 
 /// Where a claim stands among others on the same rescuee, or on the same resources: the lowest counts most.
 fn rank(claim: &Claim, by: RobotId) -> impl Ord + use<> {
@@ -110,21 +83,20 @@ impl Mission {
     /// Whether a robot has heard of a better claim on the same rescuee than its own.
     fn is_bettered(&self, robot: RobotId, own: &Claim) -> bool {
         self.claims.heard[robot.index()]
-            .mates
-            .iter()
-            .any(|(by, (claim, _))| claim.rescuee == own.rescuee && rank(claim, *by) < rank(own, robot))
+            .claims()
+            .any(|(by, claim)| claim.rescuee == own.rescuee && rank(claim, by) < rank(own, robot))
     }
 
     /// Whether the group has a resource for a claim, as its robot knows: claims that were made before, or in
     /// the same step by nearer robots, come first.
     fn has_resource(&self, robot: RobotId, own: &Claim, scene: &Scene) -> bool {
         let Some(task) = self.crew.group_of(robot) else { return false };
-        let is_before = |(by, (claim, _)): &(&RobotId, &(Claim, u64))| {
+        let is_before = |(by, claim): &(RobotId, &Claim)| {
             let is_earlier = claim.since_step < own.since_step
-                || claim.since_step == own.since_step && rank(claim, **by) < rank(own, robot);
+                || claim.since_step == own.since_step && rank(claim, *by) < rank(own, robot);
             is_earlier && !scene.is_known_gone(robot, task, claim.rescuee)
         };
-        let claimed = self.claims.heard[robot.index()].mates.iter().filter(is_before).count();
+        let claimed = self.claims.heard[robot.index()].claims().filter(is_before).count();
         (claimed as u64) < u64::from(self.crew.resources_in_field(task, &scene.beliefs.team))
     }
 
@@ -133,19 +105,23 @@ impl Mission {
     pub(super) fn tell_claims(&mut self, scene: &mut Scene) {
         let ClaimRule::ByRadio { again_s } = scene.model.mission.claims else { return };
         let again = scene.model.steps_in(again_s).max(1);
-        for place in 0..self.claims.heard.len() {
-            let robot = RobotId(place as u32);
+        for robot in self.in_turn(scene) {
+            let place = robot.index();
+            let lapsed = |heard: &Heard| heard.heard_at + LAPSE * again <= scene.step;
+            self.claims.heard[place].mates.retain(|_, heard| !lapsed(heard));
+            if !scene.beliefs.team[place].is_able() {
+                continue; // a lost robot tells nothing
+            }
             for rescuee in std::mem::take(&mut self.claims.heard[place].untold) {
                 self.tell_mates(robot, Statement::GivesUp { rescuee }, scene);
             }
             let heard = &self.claims.heard[place];
             let now = self.claim_of(robot, scene);
             let is_new = now.map(|claim| claim.rescuee) != heard.told.map(|(claim, _)| claim.rescuee);
-            if is_new || heard.told.is_some_and(|(_, step)| step + again <= scene.step) {
+            let is_due = heard.tells_again || heard.told.is_some_and(|(_, step)| step + again <= scene.step);
+            if is_new || is_due && now.is_some() {
                 self.tell_claim(robot, now, scene);
             }
-            let lapsed = |heard_at: u64| heard_at + LAPSE * again <= scene.step;
-            self.claims.heard[place].mates.retain(|_, (_, heard_at)| !lapsed(*heard_at));
         }
     }
 
@@ -160,7 +136,8 @@ impl Mission {
     }
 
     fn tell_claim(&mut self, robot: RobotId, claim: Option<Claim>, scene: &mut Scene) {
-        self.claims.heard[robot.index()].told = claim.map(|claim| (claim, scene.step));
+        let heard = &mut self.claims.heard[robot.index()];
+        (heard.told, heard.tells_again) = (claim.map(|claim| (claim, scene.step)), false);
         self.tell_mates(robot, Statement::Claims(claim), scene);
     }
 
@@ -177,7 +154,9 @@ impl Mission {
         let time_s = scene.step as f64 * scene.model.dt_s();
         for message in telemetry.heard_by_mates(time_s, scene.log) {
             let Some(to) = message.to else { continue };
+            let is_of_round = message.report.at_step >= self.claims.since_step;
             match message.report.says {
+                Statement::Claims(_) | Statement::GivesUp { .. } if !is_of_round => {}
                 Statement::Claims(claim) => self.hear_claim(to, claim, &message, scene),
                 Statement::GivesUp { rescuee } => {
                     self.claims.heard[to.index()].given_up.insert(rescuee);
@@ -194,20 +173,29 @@ impl Mission {
     /// A robot hears what a mate claims, or that it claims nothing any more. If both are on their way to the
     /// same rescuee, the one that is farther gives its claim up, and the other tells of its own again.
     fn hear_claim(&mut self, to: RobotId, claim: Option<Claim>, message: &Message, scene: &mut Scene) {
-        let by = message.sender;
+        let (by, said_at, heard_at) = (message.sender, message.report.at_step, scene.step);
         let Some(heard) = self.claims.heard.get_mut(to.index()) else { return };
-        let Some(claim) = claim else {
-            heard.mates.remove(&by);
-            return;
-        };
-        heard.mates.insert(by, (claim, scene.step));
+        if heard.mates.get(&by).is_some_and(|known| known.said_at > said_at) {
+            return; // it was overtaken
+        }
+        heard.mates.insert(by, Heard { claim, said_at, heard_at });
+        let Some(claim) = claim else { return };
         let is_under_way = self.crew.agents[to.index()].activity == Activity::Approaching(claim.rescuee);
         let Some(own) = self.claim_of(to, scene).filter(|_| is_under_way) else { return };
         if rank(&claim, by) < rank(&own, to) {
             self.release_claim(to);
             self.crew.agent(to).activity = Activity::Searching;
         } else {
-            self.claims.heard[to.index()].told = None;
+            self.claims.heard[to.index()].tells_again = true;
         }
+    }
+
+    /// The robots in the order in which they speak.
+    pub(super) fn in_turn(&self, scene: &mut Scene) -> Vec<RobotId> {
+        let mut order: Vec<RobotId> = scene.beliefs.team.iter().map(|robot| robot.id).collect();
+        self.with_telemetry(scene, |_, now, _| {
+            order = in_turn(now.team.iter(), now).into_iter().map(|robot| robot.id).collect();
+        });
+        order
     }
 }

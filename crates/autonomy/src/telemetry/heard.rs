@@ -166,6 +166,17 @@ impl Heard {
         self.spent_at_start.clone_from(&self.spent);
     }
 
+    /// How many rounds, and trips of them, were noted.
+    pub(super) fn closed(&self) -> [usize; 2] {
+        [self.history.len(), self.log.ledger.len()]
+    }
+
+    /// Forgets the rounds that were noted since there were so many.
+    pub(super) fn reopen(&mut self, [rounds, trips]: [usize; 2]) {
+        self.history.truncate(rounds);
+        self.log.ledger.truncate(trips);
+    }
+
     /// Notes a round that is over, as far as is known what became of its robots, with the costs that were
     /// said.
     pub(super) fn end_round(

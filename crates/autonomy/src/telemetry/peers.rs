@@ -23,6 +23,8 @@ pub(super) struct Peer {
     out_of: Vec<u32>,
     /// What robots said of themselves at the end of rounds.
     trips: Vec<RobotRound>,
+    /// How many rounds, and trips of them, were in its books before the negotiation.
+    closed: [usize; 2],
     /// What it was told in a negotiation, and has not taken note of yet.
     mail: Vec<Mail>,
     /// The hash of all that was heard.
@@ -50,6 +52,7 @@ impl Peer {
             heard: Heard::nothing(robots, threshold),
             out_of: vec![0; robots],
             trips: Vec::new(),
+            closed: [0; 2],
             mail: Vec::new(),
             digest: 0,
         };
@@ -71,9 +74,9 @@ impl Peer {
             Statement::Protocol { round, what } => {
                 self.mail.push(Mail { from: sender, round, what, sent_s: message.sent_s });
             }
-            Statement::StaysOut { round } => self.out_of[sender.index()] = round,
+            Statement::StaysOut { round } => self.note_out(sender, round),
             Statement::HasHeard(Digest { round, levels, out }) => {
-                out.iter().for_each(|robot| self.out_of[robot.index()] = round);
+                out.iter().for_each(|robot| self.note_out(*robot, round));
                 let others = levels.into_iter().filter(|levels| levels.of != own);
                 others.for_each(|levels| self.hear_anew(Levels { heard_s, ..levels }));
             }
@@ -90,15 +93,22 @@ impl Peer {
         }
     }
 
+    /// Notes that a robot stays out of a round, unless it is known to stay out of a later one.
+    fn note_out(&mut self, robot: RobotId, round: u32) {
+        let known = &mut self.out_of[robot.index()];
+        *known = round.max(*known);
+    }
+
     /// Whether a robot is known to stay out of a round.
     fn is_out(&self, robot: RobotId, round: u32) -> bool {
         self.out_of[robot.index()] == round
     }
 
     /// Notes the rounds that are over: what a robot saw of its own group, and what others said of
-    /// themselves.
+    /// themselves. In a negotiation it does so at each question, with what it has heard by then.
     fn close(&mut self, robot: RobotId, base: &Heard, rounds: &[RoundOutcome], model: &Model) {
-        let Self { heard, trips, .. } = self;
+        let Self { heard, trips, closed, .. } = self;
+        heard.reopen(*closed);
         for round in rounds.iter().skip(heard.history.len()) {
             let is_own = |member: &MemberOutcome| {
                 let of = |id: u32| round.groups.iter().position(|g| g.members.iter().any(|m| m.id == id));
@@ -111,8 +121,14 @@ impl Peer {
             };
             heard.end_round(round, known, model);
         }
-        let closed = heard.history.len();
-        trips.retain(|trip| trip.round as usize > closed);
+    }
+
+    /// A negotiation begins: earlier books stay as they are.
+    fn begin(&mut self) {
+        self.closed = self.heard.closed();
+        let rounds = self.heard.history.len();
+        self.trips.retain(|trip| trip.round as usize > rounds);
+        self.mail.clear();
     }
 }
 
@@ -231,9 +247,12 @@ impl Telemetry {
         }
     }
 
-    /// Robots close their books of the rounds that are over.
-    pub(crate) fn close_rounds_of_peers(&mut self, rounds: &[RoundOutcome], model: &Model) {
+    /// Robots close their books of the rounds that are over: for the first time in a negotiation, or anew.
+    pub(crate) fn close_rounds_of_peers(&mut self, rounds: &[RoundOutcome], is_first: bool, model: &Model) {
         for (robot, peer) in (0..).map(RobotId).zip(&mut self.peers) {
+            if is_first {
+                peer.begin();
+            }
             peer.close(robot, &self.heard, rounds, model);
         }
     }

@@ -41,7 +41,7 @@ use crate::metric::Catalogue;
 use crate::run::{Fault, Player, Sessions, SharedTrials, Trial, TrialKey, TrialSetup, run_trial};
 pub(crate) use grid::deciding_text;
 use grid::{cases, checked_policies};
-pub(crate) use policy::name_and_options;
+pub(crate) use policy::{name_and_options, protocol_of};
 pub(crate) use read::check_form;
 use read::{from_scenario, with_readings};
 use setting::overlapping;

@@ -160,6 +160,11 @@ pub(crate) fn name_and_options(written: &str) -> (&str, &str) {
     (name.trim(), options)
 }
 
+/// What stands behind `by` in a written policy, with or without a label.
+pub(crate) fn protocol_of(written: &str) -> Option<&str> {
+    Written::of(label_and_rest(written.trim()).1).protocol
+}
+
 /// The rule that a label breaks, if any.
 fn broken_rule(label: &str, name: &str, registry: &Registry) -> Option<&'static str> {
     if label.is_empty() || label.contains(|c: char| c.is_control() || is_unseen(c)) {

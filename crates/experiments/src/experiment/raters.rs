@@ -33,7 +33,7 @@ impl PolicySpec {
     /// than the smallest group has, or whose robots have nothing to talk about.
     fn doubt(&self, scenario: &Scenario) -> Option<String> {
         let (label, name) = (&self.label, &scenario.name);
-        if Written::of(self.written()).guide.is_some() && !scenario.goes_by_reports() {
+        if Written::of(&self.plain()).guide.is_some() && !scenario.goes_by_reports() {
             return Some(format!(
                 "{label}: {name} has no reports, medium or deceit: the estimator judges nothing"
             ));

@@ -15,7 +15,7 @@ use super::dictionary::dictionary;
 use super::names::{AGAIN, GIVEN, INPUTS, MANIFEST, RESOLVED, sweeps_in};
 use super::tables::tables_of;
 use super::{journal, owned};
-use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard, name_and_options};
+use crate::experiment::{AnalysisPlan, Experiment, Parts, Shard, name_and_options, protocol_of};
 use crate::provenance::{Manifest, scenario_differences};
 
 /// Writes the manifest and the inputs of a sweep.
@@ -176,19 +176,29 @@ pub fn experiment_of(path: &Path, manifest: &Manifest, registry: &Registry) -> R
     })
 }
 
-/// The registry with stand-ins for the policies of a manifest that it does not have.
+/// The registry with stand-ins for the policies and the protocols of a manifest that it does not have.
 fn with_absent(mut registry: Registry, manifest: &Manifest) -> Registry {
-    let mut absent: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
-    for (written, all) in manifest.policies.iter().zip(&manifest.policy_options) {
+    let mut absent: BTreeMap<(bool, String), BTreeMap<String, String>> = BTreeMap::new();
+    let mut note = |is_protocol: bool, known: &[PolicyKind], [written, all]: [&str; 2]| {
         let (name, options) = name_and_options(written);
-        if !registry.names().contains(&name) {
-            let all = Written::of(all).rule; // estimators are not those of the other program
-            absent.entry(name.to_owned()).or_default().insert(options.trim().to_owned(), all.to_owned());
+        if !name.is_empty() && known.iter().all(|kind| kind.name != name) {
+            let spelled_out = absent.entry((is_protocol, name.to_owned())).or_default();
+            spelled_out.insert(options.trim().to_owned(), all.to_owned());
+        }
+    };
+    for (written, all) in manifest.policies.iter().zip(&manifest.policy_options) {
+        // Estimators are not those of the other program.
+        let of_all = Written::of(all);
+        note(false, registry.kinds(), [written, of_all.rule]);
+        if let (Some(protocol), Some(all)) = (protocol_of(written), of_all.protocol) {
+            let options = all.find('(').map_or("", |at| &all[at..]);
+            note(true, registry.protocols(), [protocol, options]);
         }
     }
-    for (name, spelled_out) in absent {
-        // The registry has no policy of this name.
-        let _ = registry.add(PolicyKind::absent(&name, spelled_out));
+    for ((is_protocol, name), spelled_out) in absent {
+        let kind = PolicyKind::absent(&name, spelled_out);
+        // The registry has none of this name.
+        let _ = if is_protocol { registry.add_protocol(kind) } else { registry.add(kind) };
     }
     registry
 }

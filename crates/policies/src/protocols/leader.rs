@@ -2,8 +2,9 @@
 //! heard of no better tells all how it sees the groups. A robot that has heard no leader by then goes by its
 //! own view. Where messages are lost, there may be two leaders: the better one counts for whoever hears both.
 //!
-//! The robot with the best rank leads, then the one with the lowest number: the bully algorithm (Garcia-Molina,
-//! IEEE Trans. Computers C-31(1), 1982) with one exchange and a deadline in the place of acknowledgements.
+//! The robot with the best rank leads, then the one with the lowest number: the bully algorithm
+//! (Garcia-Molina, IEEE Trans. Computers C-31(1), 1982) with one exchange and a deadline in the place of
+//! acknowledgements.
 
 use serde::{Deserialize, Serialize};
 use teaming::levels::ENERGY;

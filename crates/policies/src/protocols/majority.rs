@@ -41,9 +41,9 @@ impl Votes {
     }
 
     /// The groups as the robot sees them, but for itself, which goes where most see it.
-    fn decision(mut self, robot: u32) -> Option<Assignment> {
+    fn decision(&self, robot: u32) -> Option<Assignment> {
         let place = self.place(robot);
-        let mut view = self.view.take()?;
+        let mut view = self.view.clone()?;
         view.groups.iter_mut().chain([&mut view.idle]).for_each(|group| group.retain(|id| *id != robot));
         view.groups.get_mut(place)?.push(robot);
         Some(view.sorted())
@@ -83,6 +83,7 @@ impl Protocol for Majority {
         if turn.since_s < self.wait_s {
             return Ok(Act::waits(self.wait_s - turn.since_s).keeping(&votes));
         }
-        Ok(Act { joins: votes.decision(turn.robot).map(Choice::Groups), ..Act::default() })
+        let joins = votes.decision(turn.robot).map(Choice::Groups);
+        Ok(Act { joins, ..Act::default() }.keeping(&votes))
     }
 }

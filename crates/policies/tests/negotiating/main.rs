@@ -104,10 +104,14 @@ const TALKS: [&str; 4] = ["ENG by Gossip", "ENG by Majority", "ENG by Leader", "
 proptest! {
     /// Robots that know the same and hear each other do as the base would.
     #[test]
-    fn who_knows_the_same_decides_the_same(energies in prop::collection::vec(0.0_f64..100.0, 1..9), hard in 0_usize..9) {
+    fn who_knows_the_same_decides_the_same(
+        energies in prop::collection::vec(0.0_f64..100.0, 1..9),
+        hard in 0_usize..9,
+    ) {
         let question = question(&energies, hard.min(energies.len()));
         let central = policies::standard().parse("ENG").unwrap().decide(&question).unwrap().assignment;
-        let expected: Vec<usize> = question.members.iter().map(|it| central.task_of(it.id).unwrap().index()).collect();
+        let ids = question.members.iter().map(|member| member.id);
+        let expected: Vec<usize> = ids.map(|id| central.task_of(id).unwrap().index()).collect();
         for policy in TALKS {
             let robots = negotiate(policy, vec![question.clone(); energies.len()], |_, _| true);
             prop_assert_eq!(places(&robots), expected.clone(), "{}", policy);
@@ -121,11 +125,12 @@ proptest! {
         lost in prop::collection::vec(any::<bool>(), 64),
     ) {
         let sees = (0..8).map(|robot| {
-            let known: Vec<f64> = energies.iter().zip(0..).map(|(it, id)| if id == robot { *it } else { 50.0 }).collect();
-            question(&known, 3)
+            let known = energies.iter().zip(0..).map(|(level, id)| if id == robot { *level } else { 50.0 });
+            question(&known.collect::<Vec<f64>>(), 3)
         });
         for policy in TALKS {
-            let robots = negotiate(policy, sees.clone().collect(), |to, from| !lost[(8 * to + from) as usize]);
+            let hears = |to: u32, from: u32| !lost[(8 * to + from) as usize];
+            let robots = negotiate(policy, sees.clone().collect(), hears);
             prop_assert_eq!(places(&robots).len(), 8);
         }
     }

@@ -224,7 +224,7 @@ impl Simulation {
     fn group(&mut self, decision: Decision, joins: Vec<Join>) {
         let truth = self.truth();
         let (mission, mut scene) = self.state.scene(&self.setup.model);
-        mission.assign(&decision.assignment, &mut scene);
+        mission.assign(&decision.assignment, &joins, &mut scene);
         self.turns.clear();
         if let Some(question) = self.question.take() {
             let question = Question { history: Vec::new(), evidence: None, ..question };

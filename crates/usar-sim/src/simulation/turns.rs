@@ -18,7 +18,8 @@ impl Simulation {
     /// the group in which it saw itself. Groups may so have other sizes than the question says.
     ///
     /// # Errors
-    /// It is nobody's turn, or an act cannot be done; nothing changes then.
+    /// It is nobody's turn, or an act cannot be done; nothing changes then. A robot that wakes up again and
+    /// again in one step ends the trial as failed.
     pub fn act(&mut self, acts: Vec<Act>) -> Result<(), AssignError> {
         if self.turns.is_empty() || acts.len() != self.turns.len() {
             return Err(AssignError::NotAsked);
@@ -26,10 +27,12 @@ impl Simulation {
         let deeds = self.turns.iter().zip(acts).map(|(turn, act)| self.deed(turn, act));
         let deeds = deeds.collect::<Result<_, _>>()?;
         let (mission, mut scene) = self.state.scene(&self.setup.model);
-        mission.act_in_turn(deeds, &mut scene).map_err(|endless| {
+        if let Err(endless) = mission.act_in_turn(deeds, &mut scene) {
             let (field, rule) = ("wake_in_s", "not be 0 again and again".to_owned());
-            AssignError::Act { robot: endless.0.0, field, rule }
-        })?;
+            let error = AssignError::Act { robot: endless.0.0, field, rule };
+            self.failure = Some(error.to_string());
+            return Err(error);
+        }
         self.take_question();
         Ok(())
     }
