@@ -1,5 +1,5 @@
-//! Policies as one text: `RULE`, `RULE <- ESTIMATOR` or `RULE <- ESTIMATOR | USE`, and behind each of them, if
-//! robots that decide are to talk first, `by PROTOCOL`.
+//! Policies as one text: `RULE`, `RULE <- ESTIMATOR` or `RULE <- ESTIMATOR | USE`, and behind each of them,
+//! if robots that decide are to talk first, `by PROTOCOL`.
 
 use std::sync::Arc;
 

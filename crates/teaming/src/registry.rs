@@ -1,5 +1,5 @@
-//! The registry: policies, trust measures, estimators and protocols by name, each with its options. It is a value:
-//! whoever has one adds kinds to it, and kinds look into the registry that makes them.
+//! The registry: policies, trust measures, estimators and protocols by name, each with its options. It is a
+//! value: whoever has one adds kinds to it, and kinds look into the registry that makes them.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -112,8 +112,8 @@ pub trait Session: Send {
     /// The question cannot be answered, or not before the deadline.
     fn decide(&mut self, asked: &Asked<'_>) -> Result<Decision, PolicyError>;
 
-    /// Lets robots that decide for themselves act, each in its turn, in the order of their ids. `base` is what
-    /// the base would be asked. Without a protocol, each decides at once, alone.
+    /// Lets robots that decide for themselves act, each in its turn, in the order of their ids. `base` is
+    /// what the base would be asked. Without a protocol, each decides at once, alone.
     ///
     /// # Errors
     /// A robot cannot act, or not before the deadline.

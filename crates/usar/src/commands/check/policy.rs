@@ -49,8 +49,8 @@ pub(super) fn check(text: &str, registry: &Registry) -> Result<Report, Failure> 
     }
     if spec.protocol().is_some() {
         refuse!(
-            "--policy: {}: random questions check a rule; how robots talk shows in a trial in which they decide, as \
-             in `usar run --check tunnel --set mission.decides=Robots()`",
+            "--policy: {}: random questions check a rule; how robots talk shows in a trial in which they \
+             decide, as in `usar run --check tunnel --set mission.decides=Robots()`",
             spec.label
         );
     }
