@@ -147,14 +147,14 @@ const OF_REPORTS: &[Declaration] = &[
 #[rustfmt::skip]
 const OF_JOINS: &[Declaration] = &[
     whole("agreement", "", joins::agreement).higher()
-        .means("The share of pairs of robots that saw the same groups, on average over decisions."),
+        .means("The share of pairs of robots that saw each robot in the same group, on average over decisions."),
     whole("sizes_missed", "", joins::sizes_missed).lower()
         .means("Robots above the number that the base would have sent to their task, on average."),
     whole("belief_age", "s", joins::belief_age).lower()
         .means("How old what robots had last heard of each other was when they decided, on average."),
     whole("never_heard", "", joins::never_heard).lower()
         .means("The share of other robots of which a robot had never heard when it decided, on average."),
-    whole("seconds_to_agree", "s", joins::seconds_to_agree).lower()
+    whole("time_to_agree", "s", joins::time_to_agree).lower()
         .means("Time until all robots had decided, on average over decisions with agreement on all groups."),
     whole("decided_late", "", joins::decided_late).lower()
         .means("The share of robots that had not decided when the time of a negotiation was over."),

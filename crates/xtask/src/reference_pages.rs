@@ -38,6 +38,13 @@ The tables that `usar export --to NAME.csv` writes of a trial, NAME-robots.csv a
 The program is the source of this page: `cargo run --bin xtask -- reference` makes it.
 ";
 
+const MORE: &str = "
+## More of trials.csv, where robots report and decide
+
+| column | type | unit | meaning |
+| --- | --- | --- | --- |
+";
+
 /// The pages, each with its path and its text.
 pub fn pages() -> [(PathBuf, String); 2] {
     [(place("docs/events.md"), events()), (place("docs/columns.md"), columns())]
@@ -46,15 +53,24 @@ pub fn pages() -> [(PathBuf, String); 2] {
 /// The columns of the paper's sweep and of recordings of its trials.
 fn columns() -> String {
     let file = place("scenarios/paper.ron");
-    let experiment = Experiment::load(&file, &Overrides::default(), &policies::standard())
-        .expect("the paper's sweep is sound");
+    let load = |settings: &[&str]| {
+        let set = settings.iter().map(|setting| (*setting).to_owned()).collect();
+        let overrides = Overrides { set, ..Overrides::default() };
+        Experiment::load(&file, &overrides, &policies::standard()).expect("the paper's sweep is sound")
+    };
+    let experiment = load(&[]);
     let page = columns_page(&experiment);
     let (_, sweep) = page.split_once("\n\n").expect("a title");
+    let talking = columns_page(&load(&["reports=()", "medium=()", "mission.decides=Robots()"]));
+    let of_trials = talking.split("\n## ").find(|section| section.starts_with("trials.csv"));
+    let more =
+        of_trials.unwrap_or_default().lines().filter(|row| row.starts_with("| `") && !page.contains(row));
     let of_recordings = recording::Table::ALL.map(|table| {
         let file = format!("Recordings: {}.csv", table.name());
         tables::section(&file, table.row_is(), &table.columns(&experiment.base.needs))
     });
-    format!("{COLUMNS}\n{sweep}{}", of_recordings.concat())
+    let more: Vec<String> = more.map(|row| format!("{row}\n")).collect();
+    format!("{COLUMNS}\n{sweep}{MORE}{}{}", more.concat(), of_recordings.concat())
 }
 
 /// The kinds of events, with their comments.

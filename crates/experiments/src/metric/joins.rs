@@ -43,7 +43,7 @@ pub(super) fn never_heard(record: &TrialRecord) -> Option<f64> {
 }
 
 /// Mean time in which robots agreed on all groups, in seconds, over the decisions in which they did.
-pub(super) fn seconds_to_agree(record: &TrialRecord) -> Option<f64> {
+pub(super) fn time_to_agree(record: &TrialRecord) -> Option<f64> {
     let agreed = |made: &&DecisionRecord| {
         let mut both = pairs(made).filter_map(|(a, b)| a.agrees_with(b)).peekable();
         both.peek().is_some() && both.all(|agree| agree)
