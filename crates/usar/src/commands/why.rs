@@ -1,5 +1,6 @@
 //! `usar why`: explains why a robot is in its group, and why it does not move.
 
+mod overheard;
 mod robot;
 mod told;
 
@@ -17,6 +18,7 @@ use crate::arguments::{MeasureArgument, ShownArguments, Trial, TrialArguments};
 use crate::library;
 use crate::prelude::*;
 use crate::running::Guard;
+use overheard::{Negotiation, Overheard};
 use robot::{RobotStory, Watched};
 
 /// Why is this robot in this group, and why does it stand still?
@@ -96,6 +98,9 @@ struct Account<'a> {
     /// Empty if the oracle was not run for this decision.
     oracle: Vec<OracleSays>,
     robot: Option<RobotStory>,
+    /// What the robot heard, said and knew before the round, where robots decide.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    negotiation: Option<Negotiation>,
 }
 
 impl Arguments {
@@ -104,20 +109,28 @@ impl Arguments {
         let registry = &self.measure.chosen_in(registry)?;
         let asked = self.trial.open_to_all(&self.file, registry)?;
         let mut simulation = asked.begin()?;
-        let watched = self.play(&asked, &mut simulation)?;
+        let mut session = asked.session()?;
+        let mut overheard = Overheard::new(&mut *session, self.robot.unwrap_or(u32::MAX));
+        let watched = self.play(&mut overheard, &asked, &mut simulation)?;
         let round = self.round.unwrap_or_else(|| simulation.decisions().len().max(1) as u32);
         let found = simulation.decisions().iter().find(|asked| asked.question.round == round);
         let Some(record) = found else {
             refuse!("--round: no round {round} began up to {:.1} s", simulation.time_s());
         };
-        let account = self.account(&asked, &simulation, record, watched)?;
+        let mut account = self.account(&asked, &simulation, record, watched)?;
+        account.negotiation = overheard.before(round);
         let mut out = told::text(&account, &asked);
         out.rows("account", [&account])?;
         Ok(out)
     }
 
     /// Plays the trial up to the requested moment.
-    fn play(&self, asked: &Trial, simulation: &mut Simulation) -> Result<Option<Watched>, Failure> {
+    fn play(
+        &self,
+        session: &mut Overheard<'_>,
+        asked: &Trial,
+        simulation: &mut Simulation,
+    ) -> Result<Option<Watched>, Failure> {
         let robots = simulation.world().robots.len();
         if let Some(robot) = self.robot.filter(|robot| *robot as usize >= robots) {
             refuse!("--robot: must be below {robots}, found {robot}");
@@ -127,7 +140,7 @@ impl Arguments {
             refuse!("--at: must be from 0 to {end} s, found {at}");
         }
         let mut watched = self.robot.map(Watched::new);
-        let (mut session, guard) = (asked.session()?, Guard::new(f64::INFINITY));
+        let guard = Guard::new(f64::INFINITY);
         let last_round = self.round.unwrap_or(1);
         loop {
             let is_decided = simulation.decisions().len() >= last_round as usize;
@@ -188,6 +201,7 @@ impl Arguments {
             ),
             oracle: self.oracle(asked, question, &decision.assignment)?,
             robot: story.transpose()?,
+            negotiation: None,
             decision,
             joins: &record.joins,
             team: record.team(),

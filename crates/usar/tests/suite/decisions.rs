@@ -222,6 +222,8 @@ fn why_tells_in_sentences_and_names_what_it_cannot_find() {
         "and each robot decided by RNE: 66 of 66 pairs saw the same groups",
         "it saw the groups hard ",
         "It had heard of the others so long ago: 0: 0.0 s, 1: 0.0 s, 2: 0.0 s, 4: 0.0 s",
+        "  0.0 s: it decides",
+        "energy as it knew",
     ] {
         assert!(text.contains(part), "{part:?} is not in:\n{text}");
     }

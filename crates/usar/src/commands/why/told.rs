@@ -8,6 +8,7 @@ use teaming::{Account as PolicyAccount, LevelId, Member, Question};
 use usar_sim::record::Join;
 use usar_sim::robot::{ENERGY, HP};
 
+use super::overheard::{Negotiation, TurnTaken};
 use super::robot::{RobotStory, in_words};
 use super::{Account, OracleSays};
 use crate::arguments::Trial;
@@ -18,6 +19,8 @@ use crate::prelude::*;
 const CLOSE: f64 = 0.05;
 /// Scores whose ratio differs from 1 by less than this are equal: they were summed in another order.
 const ROUNDING: f64 = 1e-9;
+/// So many characters of what a robot said are shown.
+const LONGEST: usize = 60;
 
 pub(super) fn text(account: &Account, asked: &Trial) -> Report {
     let Account { question, decision, .. } = account;
@@ -56,6 +59,9 @@ pub(super) fn text(account: &Account, asked: &Trial) -> Report {
         robot(&mut out, story, account, asked);
         let own = account.joins.iter().find(|join| join.robot == story.robot);
         own.into_iter().for_each(|own| join(&mut out, own, question));
+        if let Some(negotiation) = &account.negotiation {
+            negotiated(&mut out, negotiation, account.team);
+        }
     }
     out
 }
@@ -89,6 +95,38 @@ fn join(out: &mut Report, join: &Join, question: &Question) {
     };
     let heard: Vec<String> = join.ages_s.iter().map(age).collect();
     out.say(format!("  It had heard of the others so long ago: {}", heard.join(", ")));
+}
+
+/// What a robot heard and said before it decided, and what it knew of the others in the end.
+fn negotiated(out: &mut Report, negotiation: &Negotiation, team: &[Member]) {
+    let short = |what: &serde_json::Value| {
+        let text = what.to_string();
+        let cut = text.char_indices().nth(LONGEST).map_or(text.len(), |(at, _)| at);
+        format!("{}{}", &text[..cut], if cut < text.len() { ".." } else { "" })
+    };
+    for turn in &negotiation.turns {
+        let TurnTaken { since_s, told, says, shares, joins } = turn;
+        let told = told.iter().map(|(from, what)| format!("robot {from} said {}", short(what)));
+        let says = says.iter().map(|(to, what)| match to {
+            Some(to) => format!("it says to robot {to} {}", short(what)),
+            None => format!("it says to all {}", short(what)),
+        });
+        let shares = shares.then(|| "it says how the others are".to_owned());
+        let joins = joins.then(|| "it decides".to_owned());
+        let all: Vec<String> = told.chain(says).chain(shares).chain(joins).collect();
+        let all = if all.is_empty() { "it waits".to_owned() } else { all.join("; ") };
+        out.say(format!("  {since_s:.1} s: {all}"));
+    }
+    let level = |level: Option<f64>| or_dash(level, |level| format!("{level:.1}"));
+    let row = |knew: &Member| {
+        let is = team.iter().find(|member| member.id == knew.id);
+        let of = |name: LevelId| [level(knew.level(name)), level(is.and_then(|is| is.level(name)))];
+        let cells = [vec![knew.id.to_string()], of(ENERGY).to_vec(), of(HP).to_vec()].concat();
+        cells.into_iter().map(right).collect::<Vec<_>>()
+    };
+    let names = ["robot", "energy as it knew", "true", "HP as it knew", "true"];
+    let known: Vec<_> = negotiation.knew.members.iter().map(row).collect();
+    out.show("knew", Table::of(names.to_vec(), known));
 }
 
 impl Account<'_> {
