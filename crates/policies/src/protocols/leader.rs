@@ -71,7 +71,7 @@ pub fn kind() -> ProtocolKind {
 
 /// Whether a rank is better than another.
 fn is_better(rank: f64, robot: u32, than: f64, other: u32) -> bool {
-    rank > than || rank == than && robot < other
+    rank.total_cmp(&than).then(other.cmp(&robot)).is_gt()
 }
 
 impl Leader {

@@ -109,13 +109,13 @@ fn check(sees: &Assignment, robot: u32, tasks: usize, robots: u32) -> Result<(),
     if found != tasks {
         return Err(AssignmentError::Groups { found, tasks });
     }
-    let mut seen: Vec<u32> = sees.groups.iter().chain([&sees.idle]).flatten().copied().collect();
-    seen.sort_unstable();
-    if let Some(pair) = seen.windows(2).find(|pair| pair[0] == pair[1]) {
+    let mut named: Vec<u32> = sees.groups.iter().chain([&sees.idle]).flatten().copied().collect();
+    named.sort_unstable();
+    if let Some(pair) = named.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(AssignmentError::Twice { robot: pair[0] });
     }
-    if let Some(stranger) = seen.iter().find(|id| **id >= robots) {
+    if let Some(stranger) = named.iter().find(|id| **id >= robots) {
         return Err(AssignmentError::Stranger { robot: *stranger });
     }
-    if seen.binary_search(&robot).is_err() { Err(AssignmentError::Missing { robot }) } else { Ok(()) }
+    if named.binary_search(&robot).is_err() { Err(AssignmentError::Missing { robot }) } else { Ok(()) }
 }
