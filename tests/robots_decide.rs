@@ -328,7 +328,7 @@ impl Session for Looks {
         for turn in turns {
             let Some(round) = turn.question.history.last() else { continue };
             let known = round.groups.iter().map(|group| group.members.len()).sum();
-            if turn.since_s == 0.0 {
+            if turn.since_s <= 0.0 {
                 self.first.push(known);
             } else if turn.since_s >= 2.0 {
                 self.last.push(known);
