@@ -147,7 +147,7 @@ const OF_REPORTS: &[Declaration] = &[
 #[rustfmt::skip]
 const OF_JOINS: &[Declaration] = &[
     whole("agreement", "", joins::agreement).higher()
-        .means("The share of pairs of robots that saw each robot in the same group, on average over decisions."),
+        .means("The share of pairs of robots that saw each robot in the same group, on average."),
     whole("sizes_missed", "", joins::sizes_missed).lower()
         .means("Robots above the number that the base would have sent to their task, on average."),
     whole("belief_age", "s", joins::belief_age).lower()

@@ -26,8 +26,6 @@ pub struct Claims {
     pub(super) given_up: Vec<bool>,
     /// What each robot knows of claims, where they are told by radio; nothing otherwise.
     pub(super) heard: Vec<HeardClaims>,
-    /// The step in which the round began.
-    pub(super) since_step: u64,
 }
 
 impl Claims {
@@ -35,7 +33,7 @@ impl Claims {
         let rescuees = model.rescuee_numbers();
         let told = if model.mission.claims == ClaimRule::Known { 0 } else { model.robots.len() };
         let heard = vec![HeardClaims::default(); told];
-        Self { by: vec![None; rescuees], changes: 0, given_up: vec![false; rescuees], heard, since_step: 0 }
+        Self { by: vec![None; rescuees], changes: 0, given_up: vec![false; rescuees], heard }
     }
 
     /// What robots know of claims, where they are told by radio: a part of the hash chain.
@@ -53,9 +51,8 @@ impl Claims {
 
     /// A round begins: nothing is given up, and nobody knows of a claim.
     pub(super) fn begin_round(&mut self, step: u64) {
-        self.since_step = step;
         self.given_up.fill(false);
-        self.heard.fill(HeardClaims::default());
+        self.heard.fill(HeardClaims::since(step));
     }
 
     /// Whether a rescuee is free, as far as a robot knows.

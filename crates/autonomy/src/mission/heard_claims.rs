@@ -10,6 +10,8 @@ use crate::report::Claim;
 /// What a robot knows of claims.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub(super) struct HeardClaims {
+    /// The step in which the round began.
+    pub(super) since_step: u64,
     /// What each mate told last.
     pub(super) mates: BTreeMap<RobotId, Heard>,
     /// Rescuees that were given up, as far as the robot knows.
@@ -34,6 +36,11 @@ pub(super) struct Heard {
 }
 
 impl HeardClaims {
+    /// Nothing, in a round that begins in this step.
+    pub(super) fn since(since_step: u64) -> Self {
+        Self { since_step, ..Self::default() }
+    }
+
     /// Whether a rescuee is free, as far as the robot knows. Claims of the same step still compete.
     pub(super) fn is_free(&self, rescuee: RescueeId, step: u64) -> bool {
         let is_taken = |claim: &Claim| claim.rescuee == rescuee && claim.since_step < step;

@@ -154,7 +154,8 @@ impl Mission {
         let time_s = scene.step as f64 * scene.model.dt_s();
         for message in telemetry.heard_by_mates(time_s, scene.log) {
             let Some(to) = message.to else { continue };
-            let is_of_round = message.report.at_step >= self.claims.since_step;
+            let known = self.claims.heard.get(to.index());
+            let is_of_round = known.is_some_and(|known| message.report.at_step >= known.since_step);
             match message.report.says {
                 Statement::Claims(_) | Statement::GivesUp { .. } if !is_of_round => {}
                 Statement::Claims(claim) => self.hear_claim(to, claim, &message, scene),

@@ -61,7 +61,7 @@ impl Peer {
 
     /// What counts in the hash chain.
     pub(super) fn to_hash(&self) -> impl Serialize + '_ {
-        (self.digest, self.heard.history.len(), self.mail.len())
+        (self.digest, self.heard.history.len(), self.mail.len(), self.closed)
     }
 
     /// Hears a message of another, or what the robot itself knows. Of itself nobody tells it anything.

@@ -7,16 +7,25 @@ use teaming::{Asked, Question, Session};
 
 use crate::support::{registry_until, small};
 
-/// A program by protocol 2, whose function `act` is the body.
+/// A program by protocol 2; its function `act` is to come.
+const PROGRAM: &str = r#"
+import json, sys
+kept = {}
+for line in sys.stdin:
+    message = json.loads(line)
+    if message["type"] == "hello":
+        answer = {"type": "hello", "protocol": 2, "schema_version": 3, "name": "talks"}
+    elif message["type"] == "turns":
+        answer = {"type": "acts", "id": message["id"], "acts": [act(turn) for turn in message["turns"]]}
+    else:
+        break
+    print(json.dumps(answer), flush=True)
+"#;
+
+/// A session of a program with this body of `act`, and its folder.
 fn talks(body: &str, more: &str) -> (tempfile::TempDir, Box<dyn Session>) {
     let folder = tempfile::tempdir().unwrap();
-    let program = format!(
-        "import json, sys\nkept = {{}}\ndef act(turn):\n{body}\nfor line in sys.stdin:\n    message = json.loads(line)\n    \
-         if message['type'] == 'hello':\n        answer = {{'type': 'hello', 'protocol': 2, 'schema_version': 3, 'name': 't'}}\n    \
-         elif message['type'] == 'turns':\n        \
-         answer = {{'type': 'acts', 'id': message['id'], 'acts': [act(turn) for turn in message['turns']]}}\n    \
-         else:\n        break\n    print(json.dumps(answer), flush=True)\n"
-    );
+    let program = format!("def act(turn):\n{body}\n{PROGRAM}");
     let path = folder.path().join("talks.py");
     std::fs::write(&path, program).unwrap();
     let text = format!("ENG by EXEC(command: [\"python3\", \"{}\"]{more})", path.display());
@@ -42,8 +51,10 @@ fn acts(session: &mut dyn Session, turns: &[Turn]) -> Result<Vec<Act>, String> {
     session.act(turns, &Asked::of(&small())).map_err(|error| error.to_string())
 }
 
-const PURE: &str = "    return {'says': [{'what': turn['told'][0]['what']}, {'to': 0, 'what': turn['robot']}], 'state': \
-                    turn['state'] + [turn['since_s']], 'wake_in_s': 0.25, 'joins': turn['robot'] % 2}";
+const PURE: &str = r"
+    says = [{'what': turn['told'][0]['what']}, {'to': 0, 'what': turn['robot']}]
+    state = turn['state'] + [turn['since_s']]
+    return {'says': says, 'state': state, 'wake_in_s': 0.25, 'joins': turn['robot'] % 2}";
 
 #[test]
 fn a_program_says_what_each_robot_does_whoever_else_it_is_told_of() {
@@ -83,8 +94,10 @@ fn a_program_that_shares_memory_acts_otherwise_with_a_process_for_each_robot() {
 
 #[test]
 fn a_robot_gets_the_groups_of_the_rule_that_it_asks() {
-    let asks = "    return {'joins': turn['rule'], 'state': turn['state']} if turn['rule'] else {'asks': True, 'says': \
-                [{'what': 'hm'}], 'state': turn['state']}";
+    let asks = r"
+    if turn['rule']:
+        return {'joins': turn['rule'], 'state': turn['state']}
+    return {'asks': True, 'says': [{'what': 'hm'}], 'state': turn['state']}";
     let (_folder, mut session) = talks(asks, "");
     let (question, turns) = (small(), turns(&small()));
     let expected = policies::standard().parse("ENG").unwrap().decide(&question).unwrap().assignment;
