@@ -27,7 +27,7 @@ pub use progress::Progress;
 pub use round::{FieldState, Fitness, return_cause, turn_back_cause, unfit_cause};
 pub use scene::Scene;
 pub use settle::Sharing;
-pub use talks::{Deed, Endless, Join, Moment};
+pub use talks::{Deed, Endless, Join};
 
 use crate::belief::Holder;
 use crate::event::{Event, TurnBackCause};

@@ -9,6 +9,7 @@ use teaming::{Act, Assignment, Question, Say, Told, Turn, Undecided};
 
 use super::{Gathered, Mission, Pending, Scene};
 use crate::ids::RobotId;
+use crate::model::Model;
 use crate::report::Statement;
 use crate::telemetry::Mail;
 
@@ -132,7 +133,7 @@ impl Mission {
     pub(super) fn talk(&mut self, scene: &mut Scene) {
         let Some(mut talks) = self.talks.take() else { return };
         talks.lose(|id| scene.beliefs.team[id.index()].is_able());
-        let is_late = late(scene, talks.since_step).is_some();
+        let is_late = late(scene.model, scene.step, talks.since_step).is_some();
         for seat in &mut talks.seats {
             if let Some(telemetry) = scene.telemetry.as_deref_mut() {
                 seat.hear(telemetry.take_mail(seat.robot, self.round));
@@ -159,16 +160,16 @@ impl Mission {
     }
 
     /// The turns of robots that wait for an answer. `whole` adds to a question what its robot remembers.
-    pub fn turns(&self, whole: impl Fn(&Question) -> Question, scene: &Moment<'_>) -> Vec<Turn> {
+    pub fn turns(&self, whole: impl Fn(&Question) -> Question, model: &Model, step: u64) -> Vec<Turn> {
         let (Some(talks), Some(pending)) = (&self.talks, &self.pending) else { return Vec::new() };
-        let dt_s = scene.model.dt_s();
-        let now_s = scene.step as f64 * dt_s;
+        let dt_s = model.dt_s();
+        let now_s = step as f64 * dt_s;
         let told =
             |mail: &Mail| Told { from: mail.from.0, what: value(&mail.what), age_s: now_s - mail.sent_s };
-        let late = late_by(scene.model, scene.step, talks.since_step);
+        let late = late(model, step, talks.since_step);
         let turn = |(seat, question): (&Seat, &Question)| Turn {
             robot: seat.robot.0,
-            since_s: (scene.step - talks.since_step) as f64 * dt_s,
+            since_s: (step - talks.since_step) as f64 * dt_s,
             told: seat.told.iter().map(told).collect(),
             state: value(&seat.state),
             rule: None,
@@ -192,7 +193,7 @@ impl Mission {
         let Some(mut talks) = self.talks.take() else { return Ok(()) };
         self.pending = None;
         let (mut said, mut sharing) = (Vec::new(), Vec::new());
-        let is_late = late(scene, talks.since_step).is_some();
+        let is_late = late(scene.model, scene.step, talks.since_step).is_some();
         let after_s = (scene.step - talks.since_step) as f64 * scene.model.dt_s();
         for (seat, deed) in talks.seats.iter_mut().filter(|seat| seat.is_due).zip(acts) {
             let Deed { act, sees, ages_s } = deed;
@@ -270,20 +271,8 @@ pub struct Deed {
     pub ages_s: BTreeMap<u32, Option<f64>>,
 }
 
-/// The moment of a turn.
-pub struct Moment<'m> {
-    /// The fixed part of the trial.
-    pub model: &'m crate::model::Model,
-    /// Steps done.
-    pub step: u64,
-}
-
-fn late(scene: &Scene, since_step: u64) -> Option<Undecided> {
-    late_by(scene.model, scene.step, since_step)
-}
-
 /// What becomes of undecided robots, once the time of the negotiation is over.
-fn late_by(model: &crate::model::Model, step: u64, since_step: u64) -> Option<Undecided> {
+fn late(model: &Model, step: u64, since_step: u64) -> Option<Undecided> {
     match model.mission.decides {
         Decider::Robots { deadline_s, undecided, .. } => {
             // At the deadline itself robots may still decide.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use teaming::levels::ENERGY;
 use teaming::{Act, Assignment, Choice, PolicyError, Protocol, ProtocolKind, Talk, Turn};
 
-use super::LONGEST_S;
+use super::is_fit;
 
 /// Who leads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -63,8 +63,7 @@ struct Mind {
 pub fn kind() -> ProtocolKind {
     let about = "all go where the leader sees them, or by their own view if they hear none";
     let kind = ProtocolKind::made("Leader", about, |options: Leader, _| {
-        let is_fit = (0.0..=LONGEST_S).contains(&options.wait_s);
-        is_fit.then(|| Talk::shared(options)).ok_or(format!("wait_s must be 0 to {LONGEST_S}"))
+        is_fit(options.wait_s).map(|()| Talk::shared(options))
     });
     kind.from_sources(env!("SOURCES_PROTOCOL_LEADER"))
 }

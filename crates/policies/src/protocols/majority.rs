@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 use teaming::{Act, Assignment, Choice, PolicyError, Protocol, ProtocolKind, Talk, TaskId, Turn};
 
-use super::LONGEST_S;
+use super::is_fit;
 
 /// Its options.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -54,8 +54,7 @@ impl Votes {
 pub fn kind() -> ProtocolKind {
     let about = "each tells how it sees the groups, and goes where most see it";
     let kind = ProtocolKind::made("Majority", about, |options: Majority, _| {
-        let is_fit = (0.0..=LONGEST_S).contains(&options.wait_s);
-        is_fit.then(|| Talk::shared(options)).ok_or(format!("wait_s must be 0 to {LONGEST_S}"))
+        is_fit(options.wait_s).map(|()| Talk::shared(options))
     });
     kind.from_sources(env!("SOURCES_PROTOCOL_MAJORITY"))
 }

@@ -7,7 +7,7 @@ use teaming::{Act, Assignment, AssignmentError, Choice, Decision, Question, Turn
 
 use super::{AssignError, Simulation};
 use crate::ids::RobotId;
-use crate::mission::{Deed, Moment};
+use crate::mission::Deed;
 use crate::record::Join;
 
 /// Longest time for which a robot may sleep, in seconds.
@@ -39,8 +39,7 @@ impl Simulation {
 
     /// The turns of robots that wait for an answer.
     pub(super) fn due(&self) -> Vec<Turn> {
-        let moment = Moment { model: self.model(), step: self.state.step };
-        self.state.mission.turns(|question| self.whole(question), &moment)
+        self.state.mission.turns(|question| self.whole(question), self.model(), self.state.step)
     }
 
     /// What a robot does, once it is checked.
